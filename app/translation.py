@@ -223,10 +223,10 @@ def load_catalogue(code: str) -> gettext.NullTranslations:
     return gettext.translation("metagraph", FOLDER, [code])
 
 
-def choose_language(settings: Any, system: Iterable[str] = ()) -> None:
-    """Choose the language that METAGRAPH_LANGUAGE names, else the one in the settings, else the first of the
-    system's that we have. `system` has language tags, such as "de-AT".
+def choose_language(settings: Any, system: Iterable[str] = (), usual: str = "") -> None:
+    """Choose the language that METAGRAPH_LANGUAGE names, else the one in the settings, else the `usual` one
+    of a studio, else the first of the system's that we have. `system` has language tags, such as "de-AT".
     """
-    kept = os.environ.get("METAGRAPH_LANGUAGE") or str(settings.value("language", ""))
+    kept = os.environ.get("METAGRAPH_LANGUAGE") or str(settings.value("language", "")) or usual
     wanted = [tag.replace("_", "-").split("-")[0].lower() for tag in system]
     choose(kept or next((code for code in wanted if code in COMPLETE), ENGLISH))

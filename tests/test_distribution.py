@@ -4,6 +4,7 @@ export in an environment that has nothing but what the Python runtime's README n
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -137,3 +138,36 @@ def test_installed_without_the_desktop_it_plays_an_export_as_the_preview_does(
     assert re.search(r" \(\d+, 4\) planned \[\]\n$", played.stdout), played.stdout
     told = run(programs / "metagraph", "--version", cwd=tmp_path)
     assert told.returncode == 0 and told.stdout.startswith("metagraph "), told.stderr
+
+
+def test_there_is_one_version_number(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    from app.cli.parser import main
+    from app.shell.system_report import make_system_report
+    from metagraph import __version__
+    from metagraph.engines.export import write_project_files
+    from tests.conftest import Toy
+
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert "version" in declared["project"]["dynamic"] and "version" not in declared["project"]
+    assert declared["tool"]["setuptools"]["dynamic"]["version"] == {"attr": "metagraph.__version__"}
+    with pytest.raises(SystemExit):
+        main(["--version"])
+    assert capsys.readouterr().out == f"metagraph {__version__}\n"
+    assert make_system_report()["Metagraph"].startswith(f"{__version__}, ")
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert f"## [{__version__}]" in text or "## [Unreleased]" in text
+    runtimes = ROOT / "metagraph" / "engines" / "runtimes"
+    blender = tomllib.loads(
+        (runtimes / "blender" / "metagraph_blender" / "blender_manifest.toml").read_text("utf-8")
+    )
+    unreal = json.loads((runtimes / "unreal" / "Metagraph.uplugin").read_text("utf-8"))
+    assert blender["version"] == unreal["VersionName"] == __version__
+    exported = write_project_files(Toy().project(), tmp_path).json
+    assert json.loads(exported.read_text("utf-8"))["exporter"] == f"Metagraph {__version__}"
+    elsewhere = [
+        path
+        for folder in PACKAGES
+        for path in (ROOT / folder).rglob("*.py")
+        if re.search(rf"""["']{re.escape(__version__)}["']""", path.read_text("utf-8"))
+    ]
+    assert elsewhere == [ROOT / "metagraph" / "__init__.py"], "elsewhere it is imported"

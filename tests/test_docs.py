@@ -18,6 +18,8 @@ import msgspec
 import pytest
 
 from app.cli.parser import COMMANDS, main
+from app.features import check_studio_features
+from metagraph.common.studio import read_studio
 from metagraph.engines import vectors
 from metagraph.engines.targets import registry
 from metagraph.formats.language_files import read_pack
@@ -160,6 +162,10 @@ def test_project_and_study_files_in_the_pages_can_be_read(page: Path, n: int, tm
         return
     if text.startswith("perceive:"):
         assert perceive_from_text(text).pairs
+        return
+    if page.name == "studio.md":
+        (tmp_path / "studio.yaml").write_text(text, encoding="utf-8")
+        assert check_studio_features(read_studio(tmp_path / "studio.yaml")).problems == ()
         return
     project = parse_project(text, Path("page.metagraph.yaml"))
     assert project.clips and project.skeleton is not None

@@ -17,12 +17,16 @@ def main() -> int:
     parser = argparse.ArgumentParser("python -m app.bundle", description=__doc__)
     parser.add_argument("out", type=Path, help="the folder that the bundle comes into")
     parser.add_argument("--folder-only", action="store_true", help="pack nothing")
+    parser.add_argument(
+        "--updates", default="", metavar="ADDRESS", help="where it may ask for a newer version (https)"
+    )
+    parser.add_argument("--studio", default="", metavar="PATH", help="where the studio's defaults are")
     options = parser.parse_args()
     if not sys.platform.startswith("linux"):
         print("Bundles are made on Linux only so far.", file=sys.stderr)
         return 2
     options.out.mkdir(parents=True, exist_ok=True)
-    made = [make_folder(options.out)]
+    made = [make_folder(options.out, updates=options.updates, studio=options.studio)]
     if not options.folder_only:
         print("Packing")
         made.append(pack_tar(made[0], options.out))

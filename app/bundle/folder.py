@@ -5,6 +5,7 @@ from __future__ import annotations
 import compileall
 import os
 import py_compile
+import re
 import shutil
 import subprocess
 import sys
@@ -13,8 +14,10 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from app.bundle.leftovers import PYTHON, SITE
+from app.bundle.leftovers import PYTHON, SITE, STRIPPED, UNCOMPILED
 from app.bundle.libraries import add_libraries, set_search_path
+from app.shell.update_check import ADDRESS, is_safe
+from metagraph.common.studio import ADDRESS as STUDIO
 
 ROOT = Path(__file__).resolve().parents[2]
 LAUNCHER = Path(__file__).parent / "launcher"
@@ -24,10 +27,14 @@ PARTS = ("app", "metagraph", "preview", "sample_clips", "pyproject.toml", "READM
 Tell = Callable[[str], object]
 
 
-def make_folder(out: Path, tell: Tell = print) -> Path:
-    """Make the folder `metagraph` inside `out`, replacing an older one; return it. Raises OSError, and
-    subprocess.CalledProcessError if the packages cannot be installed.
+def make_folder(out: Path, tell: Tell = print, updates: str = "", studio: str = "") -> Path:
+    """Make the folder `metagraph` inside `out`, replacing an older one; return it. updates: the address that
+    it may ask for a newer version, studio: the path of the studio's defaults; "" for none. Raises OSError,
+    ValueError for an address that it would not ask, and subprocess.CalledProcessError if the packages cannot
+    be installed.
     """
+    if updates and not is_safe(updates):
+        raise ValueError(f"'{updates}' does not begin with https://")
     folder = out / "metagraph"
     if folder.exists():
         shutil.rmtree(folder)
@@ -38,9 +45,15 @@ def make_folder(out: Path, tell: Tell = print) -> Path:
     install_packages(site)
     tell("Leaving out what is not used")
     remove_matches(site, SITE)
+    strip([binary for name in STRIPPED for binary in (site / name).rglob("*.so")])
     shutil.copytree(ROOT / "docs", site / "docs", ignore=shutil.ignore_patterns("*.py", "__pycache__"))
     shutil.copy(LAUNCHER / "sitecustomize.py", site)
     (site / "bundled").write_text("This Metagraph brings its own Python.\n")
+    shutil.copy(ROOT / "CHANGELOG.md", site)
+    if updates:
+        (site / ADDRESS).write_text(updates, encoding="utf-8")
+    if studio:
+        (site / STUDIO).write_text(studio, encoding="utf-8")
     tell("Adding libraries of the system that a bare one lacks")
     add_libraries(folder, site)
     tell("Compiling")
@@ -51,6 +64,7 @@ def make_folder(out: Path, tell: Tell = print) -> Path:
         # The folder may be read-only, or a copy with other times.
         invalidation_mode=py_compile.PycInvalidationMode.UNCHECKED_HASH,
         stripdir=str(folder),
+        rx=re.compile(UNCOMPILED),
     )
     for name in ("metagraph", "metagraph.desktop", "metagraph.xml"):
         shutil.copy(LAUNCHER / name, folder)

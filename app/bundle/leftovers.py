@@ -9,6 +9,11 @@ PYTHON = (
     "lib-dynload/readline*", "lib-dynload/_dbm*", "lib-dynload/_gdbm*",
 )  # fmt: skip
 
+# Folders of packages whose binaries have parts that only debuggers read: 25 MB of PyAV's 32.
+STRIPPED = ("av",)
+# Packages that are not compiled beforehand, since only an extra's installation runs them.
+UNCOMPILED = r"[/\\]pip[/\\]"
+
 _QT = "PySide6/Qt"
 SITE = (
     "bin",
@@ -33,5 +38,12 @@ SITE = (
         "assistant", "designer", "linguist", "lupdate", "lrelease", "qml*", "svgtoqml", "include", "scripts",
         "typesystems", "glue", "doc", "*.pyi", "libpyside6qml*",
     )),
-    "numpy/**/tests", "pyqtgraph/examples", "PIL/*.pyi",
+    # Texts of Qt's own tools and of modules that are not there; the window's are `qtbase`.
+    *(f"{_QT}/translations/{name}_*.qm" for name in (
+        "assistant", "designer", "linguist", "qt", "qtdeclarative",
+    )),
+    "numpy/**/tests", "numpy/f2py", "numpy/distutils", "pyqtgraph/examples", "PIL/*.pyi",
+    # A format of pictures that no character has.
+    "PIL/_avif*.so", "pillow.libs/libavif*",
+    "trimesh",  # no module imports it yet
 )  # fmt: skip

@@ -62,6 +62,9 @@ def pack_deb(folder: Path, to: Path, glibc: str) -> Path:
         " An animator drops clips onto stances, gestures, fidgets and transitions. All connections follow,\n"
         " a preview plays the character, and engines get it as JSON and GLB.\n"
     )
+    goodbye = tree / "DEBIAN" / "postrm"
+    shutil.copy(Path(__file__).parent / "launcher" / "postrm", goodbye)
+    goodbye.chmod(0o755)
     path = to / f"metagraph-studio_{__version__}_{machine}.deb"
     environment = {**os.environ, "SOURCE_DATE_EPOCH": str(WHEN)}
     subprocess.run(

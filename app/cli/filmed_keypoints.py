@@ -68,7 +68,8 @@ def require_estimator(options: Namespace) -> None:
     """Install the estimator if it is missing and somebody at the terminal agrees. Raises
     EstimatorMissingError.
     """
-    from metagraph.common.extras import EXTRAS, ExtraError, install_extra, is_installed
+    from metagraph.common.extra_steps import ExtraError, install_extra
+    from metagraph.common.extras import EXTRAS, is_installed
     from metagraph.formats.filmed.estimator import EXTRA, EstimatorError, EstimatorMissingError
 
     if is_installed(EXTRA):

@@ -7,12 +7,14 @@ import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from metagraph.errors import FileError
+from app.project.given_files import sort_paths
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
-    parser.add_argument("project", type=Path, nargs="?", help="the project to open")
+    parser.add_argument(
+        "paths", type=Path, nargs="*", metavar="project", help="the project to open, or clips for a new one"
+    )
     parser.add_argument("--sample", action="store_true", help="open the sample project")
     parser.add_argument("--clip", metavar="NAME", help="select this clip of the project, and play it")
 
@@ -25,13 +27,7 @@ def has_screen() -> bool:
 
 
 def run(options: Namespace) -> int:
-    if options.project is not None and not options.project.is_file():
-        raise FileError(
-            options.project,
-            "there is no such project",
-            "while opening it",
-            "Give a file ending in .metagraph.yaml.",
-        )
+    project, clips = sort_paths(options.paths)
     if not has_screen() and os.environ.get("QT_QPA_PLATFORM") is None:
         if not options.json:
             print("There is no screen, so Metagraph runs the demo without a window.\n")
@@ -39,10 +35,15 @@ def run(options: Namespace) -> int:
 
         parser = ArgumentParser()
         demo_command.add_arguments(parser)
-        wanted = Namespace(json=options.json, project=options.project)
+        wanted = Namespace(json=options.json, project=project)
         return demo_command.run(parser.parse_args([], wanted))
     from app.main import run_window
+    from app.project.second_start import StartRequest, send_start_request
     from metagraph.formats.outputs import allow_all_outputs
 
+    given = tuple(str(path.resolve()) for path in options.paths)
+    token = os.environ.get("XDG_ACTIVATION_TOKEN", "")
+    if send_start_request(StartRequest(given, options.sample, options.clip, token)):
+        return 0
     with allow_all_outputs():  # what it saves to, it has read
-        return run_window(options.project, options.sample, options.clip)
+        return run_window(project, options.sample, options.clip, clips)

@@ -4,6 +4,9 @@ A feature is taken out by deleting its folder and its line here. The order is th
 commands in a group.
 """
 
+from metagraph.common.studio import Studio
+from metagraph.common.wording import phrase
+
 FEATURES = (
     "files",
     "library",
@@ -41,3 +44,16 @@ FEATURES = (
     "welcome",
     "help",
 )
+NEEDED = ("files", "help")  # without these nobody could work
+
+
+def check_studio_features(studio: Studio) -> Studio:
+    """Return a studio's defaults without the features that are unknown or needed; each is a problem."""
+    for name in studio.hidden_features:
+        if name in NEEDED or name not in FEATURES:
+            cause = phrase("the feature '{name}' cannot be hidden", name=name)
+            names = ", ".join(each for each in FEATURES if each not in NEEDED)
+            studio = studio.with_problem(
+                f"hide/features/{name}", cause, phrase("Known are {names}.", names=names)
+            )
+    return studio

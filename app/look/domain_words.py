@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from app.translation import make_lazy_texts, tr, tr_noop
+from metagraph.common.studio import get_studio
 
 KIND_TITLES = make_lazy_texts(
     lambda: {
@@ -35,25 +36,31 @@ LAYER_LONG_TITLES = make_lazy_texts(
     lambda: {"body": tr("Body layer"), "arms": tr("Arms layer"), "head": tr("Head layer")}
 )
 COLOR_TITLES = make_lazy_texts(
-    lambda: {
-        "": "",
-        "red": tr("Red"),
-        "orange": tr("Orange"),
-        "yellow": tr("Yellow"),
-        "green": tr("Green"),
-        "blue": tr("Blue"),
-        "purple": tr("Purple"),
-    }
+    lambda: (
+        {
+            "": "",
+            "red": tr("Red"),
+            "orange": tr("Orange"),
+            "yellow": tr("Yellow"),
+            "green": tr("Green"),
+            "blue": tr("Blue"),
+            "purple": tr("Purple"),
+        }
+        | dict(get_studio().colours)
+    )
 )
 COLOR_LABELS = make_lazy_texts(
-    lambda: {
-        "red": tr("Red label"),
-        "orange": tr("Orange label"),
-        "yellow": tr("Yellow label"),
-        "green": tr("Green label"),
-        "blue": tr("Blue label"),
-        "purple": tr("Purple label"),
-    }
+    lambda: (
+        {
+            "red": tr("Red label"),
+            "orange": tr("Orange label"),
+            "yellow": tr("Yellow label"),
+            "green": tr("Green label"),
+            "blue": tr("Blue label"),
+            "purple": tr("Purple label"),
+        }
+        | dict(get_studio().colours)
+    )
 )
 
 # What stands in sentences and lists as the domain writes it: whoever shows one says `tr(word)`.

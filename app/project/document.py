@@ -11,6 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from msgspec import structs
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
@@ -21,6 +22,7 @@ from app.project.opening import with_motion_of
 from app.project.version_count import count_kept_versions
 from app.project.writing import Writing, move_steps
 from app.translation import get_english, tr
+from metagraph.common.studio import name_author
 from metagraph.errors import FileError
 from metagraph.formats.locking import Lock, make_owner
 from metagraph.formats.new_file import Access, access_of
@@ -142,7 +144,8 @@ class Document(QObject):
         self.undo_stack.setUndoLimit(UNDO_STEPS)
         self.undo_stack.cleanChanged.connect(self.state_changed)
         self.undo_stack.indexChanged.connect(self.state_changed)
-        self.owner = make_owner()
+        owner = make_owner()
+        self.owner = structs.replace(owner, user=name_author(owner.user))
         self.lock: Lock | None = None
         self.read_only = False
         self.newer = False

@@ -27,8 +27,10 @@ from app.project.step_store import find_steps
 from app.project.unsaved import Unsaved, count_lost_steps
 from app.project.writing import FolderGoneError
 from app.translation import tr, tr_error
+from metagraph.common.extras import find_missing_extra
 from metagraph.common.files import is_file
 from metagraph.common.network_paths import allow
+from metagraph.common.studio import find_start_folder
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.locking import Lock
@@ -56,13 +58,14 @@ def _filter() -> str:
 class Files(QObject):
     """The files of a window. `told` has words for the status bar, `report` (title, lines) to read. `opened`
     is emitted when a project is shown. `noticed` has (words, tip, function that shows more), for later
-    reading.
+    reading. `extra_wanted` has the name of an extra that the user wants to see.
     """
 
     told = Signal(str)
     report = Signal(str, object)
     opened = Signal()
     noticed = Signal(str, str, object)
+    extra_wanted = Signal(str)
 
     def __init__(self, document: Document, jobs: Jobs, window: QWidget) -> None:
         super().__init__(window)
@@ -92,18 +95,21 @@ class Files(QObject):
 
     # --- new and open
 
-    def new(self) -> None:
-        if self.refuse():
-            return
-        if self.may_leave():
-            self.document.load(Project(), None)
-            self.opened.emit()
+    def new(self, name: str | None = None) -> bool:
+        """Show an empty project in place of this one, with a name if there is one; return whether it is
+        there.
+        """
+        if self.refuse() or not self.may_leave():
+            return False
+        self.document.load(Project() if name is None else Project(name=name), None)
+        self.opened.emit()
+        return True
 
     def ask_open(self) -> None:
         if self.refuse():
             return
         name, _ = QFileDialog.getOpenFileName(
-            self.window, tr("Open project"), str(self.document.folder or Path.home()), _filter()
+            self.window, tr("Open project"), str(find_start_folder(self.document.folder)), _filter()
         )
         if name:
             self.open(Path(name))
@@ -272,7 +278,21 @@ class Files(QObject):
         """Report what went wrong with a job."""
         if not (is_foreseen(error) or isinstance(error, WORDS)):
             return  # reported already
-        QMessageBox.warning(self.window, "Metagraph", tr_error(error))
+        self.show_warning("Metagraph", error)
+
+    def show_warning(self, title: str, error: Exception) -> None:
+        """Show what went wrong, and offer the extras where one is missing."""
+        name = find_missing_extra(error)
+        if name is None:
+            QMessageBox.warning(self.window, title, tr_error(error))
+            return
+        box = QMessageBox(QMessageBox.Icon.Warning, title, tr_error(error), parent=self.window)
+        box.addButton(QMessageBox.StandardButton.Ok)
+        more = box.addButton(tr("Extras…"), QMessageBox.ButtonRole.ActionRole)
+        box.exec()
+        box.deleteLater()  # its parent would keep it
+        if box.clickedButton() is more:
+            self.extra_wanted.emit(name)
 
     # --- save
 
@@ -284,7 +304,7 @@ class Files(QObject):
         return True
 
     def save_as(self) -> bool:
-        start = self.document.folder or Path.home()
+        start = find_start_folder(self.document.folder)
         name, _ = QFileDialog.getSaveFileName(
             self.window,
             tr("Save project as"),

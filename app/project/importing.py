@@ -17,6 +17,7 @@ from app.project.kept_maps import read_joint_maps
 from app.project.load import Load
 from app.project.opening import take_over
 from app.translation import tr, tr_phrase
+from metagraph.common.studio import find_start_folder
 from metagraph.common.wording import Phrase
 from metagraph.formats.clip_readers import describe_clip_files, list_clip_suffixes
 from metagraph.formats.import_words import Remedy, count_alike, describe_import, describe_imported
@@ -84,7 +85,7 @@ class Importing(QObject):
         if self.files.refuse():
             return
         name = QFileDialog.getExistingDirectory(
-            self.widget, tr("Import a folder of clips"), str(self.document.folder or Path.home())
+            self.widget, tr("Import a folder of clips"), str(find_start_folder(self.document.folder))
         )
         if name:
             self.import_paths([name])
@@ -93,7 +94,7 @@ class Importing(QObject):
         if self.files.refuse():
             return
         names, _ = QFileDialog.getOpenFileNames(
-            self.widget, tr("Import clips"), str(self.document.folder or Path.home()), _filter()
+            self.widget, tr("Import clips"), str(find_start_folder(self.document.folder)), _filter()
         )
         if names:
             self.import_paths(names)
@@ -229,7 +230,7 @@ class Importing(QObject):
         name = QFileDialog.getExistingDirectory(
             self.widget,
             tr("Locate {missing} missing clips", missing=len(missing)),
-            str(self.document.folder or Path.home()),
+            str(find_start_folder(self.document.folder)),
         )
         if not name:
             return

@@ -16,6 +16,7 @@ from app.project.files import Files
 from app.project.importing import FileDrop, Importing
 from app.project.jobs import Jobs, WindowJob
 from app.translation import tr, tr_plural
+from metagraph.common.studio import find_start_folder
 from metagraph.formats.clip_readers import list_clip_suffixes
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import Project
@@ -74,7 +75,7 @@ class LabelFiles:
         if self._files.refuse():
             return
         name, _ = QFileDialog.getOpenFileName(
-            self._widget, tr("Import labels"), str(self._document.folder or Path.home()), _filter()
+            self._widget, tr("Import labels"), str(find_start_folder(self._document.folder)), _filter()
         )
         if name:
             self.take([Path(name)])

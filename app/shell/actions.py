@@ -9,12 +9,13 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Literal
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, QSettings
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
 
 from app import faults
 from app.shell.mnemonics import with_distinct_keys
+from app.shell.studio_defaults import find_hidden_commands, find_studio_shortcuts
 from app.translation import tr, tr_noop
 from app.widgets.soon import Soon
 
@@ -125,16 +126,21 @@ class Actions:
         self._mode = mode
         self._soon = Soon(self.refresh, parent)
         self._made: dict[str, QAction] = {}
+        usual = {c.id: tuple(QKeySequence(k).toString() for k in c.keys) for c in self.commands}
+        studio = find_studio_shortcuts(usual)
+        self._hidden = find_hidden_commands(usual, QSettings())
         room = QObject(parent)  # a window handles an event for each child of its own
         for command in self.commands:
             if command.id in self._made:
                 raise ValueError(f"two commands are called {command.id!r}")
             action = QAction(command.words, room)
             action.setObjectName(command.id)
-            if command.keys:
-                # A platform's standard key may equal the one given beside it; twice, it would be ambiguous.
-                keys_once = dict.fromkeys(QKeySequence(k).toString() for k in command.keys)
+            # A platform's standard key may equal the one given beside it; twice, it would be ambiguous.
+            keys_once = dict.fromkeys(studio.get(command.id, usual[command.id]))
+            if keys_once:
                 action.setShortcuts([QKeySequence(k) for k in keys_once])
+            if command.id in self._hidden:
+                action.setVisible(False)
             keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
             tip = command.tip or command.plain
             action.setToolTip(f"{tip} ({keys})" if keys else tip)
@@ -216,7 +222,7 @@ class Actions:
                 action.setEnabled(enabled)
             if command.checked is not None:
                 action.setChecked(command.checked())  # a click changes it, too
-            if command.visible is not None:
+            if command.visible is not None and command.id not in self._hidden:
                 action.setVisible(command.visible())
         for titles, menu in self._by_menu:
             texts = tuple([s.text if isinstance(s.text, str) else s.text() for s in menu])

@@ -15,7 +15,7 @@ from metagraph.common.extras import EXTRAS, find_extras_folder, is_bundle, is_in
 from metagraph.common.programs import ROOT
 from metagraph.common.user_folders import find_user_folder
 
-PACKAGES = ("PySide6_Essentials", "numpy", "moderngl", "trimesh", "pyqtgraph", "pyyaml", "av", "msgspec")
+PACKAGES = ("PySide6_Essentials", "numpy", "moderngl", "pyqtgraph", "pyyaml", "av", "msgspec")
 
 
 def make_system_report() -> dict[str, str]:

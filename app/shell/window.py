@@ -18,6 +18,7 @@ from app.project.files import Files
 from app.project.importing import Importing
 from app.project.jobs import Jobs
 from app.project.learned import Learned
+from app.project.second_start import SecondStarts
 from app.project.watching import Watcher
 from app.shell.actions import Actions, Command, Standard
 from app.shell.context import Contribute, Contribution, HeaderItem, Services
@@ -28,6 +29,7 @@ from app.shell.keyboard import Keyboard
 from app.shell.language_menu import make_language_command
 from app.shell.notice import Notice
 from app.shell.places import PanelPlaces
+from app.shell.studio_defaults import SHOW_ALL, is_all_shown, is_anything_hidden
 from app.shell.verbs import Verbs
 from app.shell.workspace_keeper import Workspaces
 from app.shell.workspace_tabs import WorkspaceTabs, list_workspace_commands
@@ -36,7 +38,9 @@ from app.stage.problem_watch import ProblemWatch
 from app.stage.stage import Stage
 from app.translation import tr
 from app.widgets.drop_frame import DropFrame
+from metagraph.common.studio import get_studio
 
+FIRST_THEME = "dark"
 LATE = 4000  # milliseconds after which the late panels are made in any case
 
 
@@ -63,6 +67,7 @@ class WindowShell:
             ProblemWatch(self.document, self.stage.session, self.jobs, self.compatibility, window)
         )
         self.notice = services.add(Notice(window))
+        self.second_starts = services.add(SecondStarts(window))
         services.add(Verbs())
         self.faults = FaultTeller(self.document, window, self.tell)
 
@@ -102,7 +107,7 @@ class Window(QMainWindow):
         self.setAcceptDrops(True)
         self.shell = shell = WindowShell(self)
         session = shell.stage.session
-        kept = shell.settings.value("theme")
+        kept: Any = shell.settings.value("theme") or get_studio().theme
         if kept == "dark" or kept == "light":
             session.look.name = kept
         apply_theme(_application(), get_theme(session.look.name))
@@ -156,8 +161,23 @@ class Window(QMainWindow):
                     study=True,
                 ),
                 make_language_command(self.shell, self.language_chosen.emit),
+                Command(
+                    "show_all",
+                    "&View",
+                    "look",
+                    tr("Show what your studio hi&des"),
+                    self._toggle_hidden,
+                    tip=tr("From the next start on"),
+                    checked=lambda: is_all_shown(self.shell.settings),
+                    visible=is_anything_hidden,
+                ),
             ),
         )
+
+    def _toggle_hidden(self) -> None:
+        shown = is_all_shown(self.shell.settings)
+        self.shell.settings.setValue(SHOW_ALL, "false" if shown else "true")
+        self.shell.tell(tr("This holds from the next start on."))
 
     def _add_toggles(self) -> None:
         panels = self.menus["&View"].addMenu(tr("Panels"))
@@ -170,6 +190,7 @@ class Window(QMainWindow):
         d.loaded.connect(shell.notice.clear)
         shell.watcher.file_touched.connect(shell.files.look_at_file)
         shell.files.noticed.connect(shell.notice.tell)
+        shell.files.extra_wanted.connect(self._show_extras)
         d.saved.connect(lambda: shell.learned.keep(d, shell.jobs))
         for signal in (
             s.place.layer_changed,
@@ -241,13 +262,19 @@ class Window(QMainWindow):
         for command in self.shell.actions.commands:
             if command.icon:
                 self.shell.actions[command.id].setIcon(icons.make_icon(command.icon, look.text))
-        self.shell.settings.setValue("theme", look.name)
+        if look.name != (self.shell.settings.value("theme") or get_studio().theme or FIRST_THEME):
+            self.shell.settings.setValue("theme", look.name)  # a studio's is not the user's choice
         self.refresh()
 
     def refresh(self) -> None:
         """Show the state of document and session in title, header and menus."""
         self.shell.actions.refresh()
         self._show_title()
+
+    def _show_extras(self, name: str) -> None:
+        from app.shell.extras_dialog import show_extras
+
+        show_extras(self, self.shell.jobs, name)
 
     def _follow(self) -> None:
         """Show it, updating the commands once for several changes."""
@@ -304,6 +331,7 @@ class Window(QMainWindow):
             event.ignore()
             return
         self.shell.faults.stop()
+        self.shell.second_starts.stop()
         self.workspaces.save()
         self.shell.learned.keep(self.shell.document)
         self.shell.stage.stop()

@@ -16,10 +16,11 @@ from threading import Lock
 from types import ModuleType
 from typing import Any
 
-from metagraph.common.extras import ExtraError, install_extra, is_bundle
+from metagraph.common.extra_steps import ExtraError, install_extra
+from metagraph.common.extras import describe_missing_extra, is_bundle
 from metagraph.common.programs import ROOT, is_own, run_program
+from metagraph.common.wording import phrase
 
-NUMBA = "numba>=0.60"
 LOADING = "Installing the compiler that new motion needs (60 MB to load, once) ..."
 
 _ONE = Lock()  # one thread installs, the others wait
@@ -87,10 +88,7 @@ def _install() -> None:
     if not setup.exists() or not any(
         (Path(sys.prefix) / name).exists() for name in (".installed", ".installed-test")
     ):
-        raise CompilerError(
-            f'This needs numba, which is not installed. Install it: "{sys.executable}" -m pip install '
-            f'"{NUMBA}"'
-        )
+        raise CompilerError(describe_missing_extra("compiled", phrase("This")))
     print(LOADING, file=sys.stderr, flush=True)
     retries = os.environ.get("PIP_RETRIES", "2")  # if there is no network that is given in seconds
     code, words = run_program(

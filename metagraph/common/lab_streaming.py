@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from metagraph.common.extras import is_bundle
+from metagraph.common.extras import describe_missing_extra
+from metagraph.common.wording import phrase
 
-REMEDY = "install pylsl ({command}), or leave {option} out"
 # Places at which liblsl looks for its settings, in its order; LSLAPICFG names another before them.
 SETTINGS = ("lsl_api.cfg", "~/lsl_api/lsl_api.cfg", "/etc/lsl_api/lsl_api.cfg")
 # Settings with which liblsl asks nobody beyond this computer, joins no multicast group of a network, and
@@ -88,9 +88,15 @@ def load_lsl(option: str, network: bool) -> Any:
 
             pylsl.StreamInfo("settings", "none", 1, 0, "string", "settings")  # reads the settings, once
         except (ImportError, OSError, RuntimeError) as error:
-            command = "metagraph extras add lab" if is_bundle() else "pip install 'metagraph-studio[lab]'"
-            remedy = REMEDY.format(command=command, option=option)
-            raise LabStreamError(f"the Lab Streaming Layer cannot be had ({error}): {remedy}") from None
+            missing = isinstance(error, ImportError)
+            why = describe_missing_extra("lab", phrase("The Lab Streaming Layer")) if missing else str(error)
+            raise LabStreamError(
+                phrase(
+                    "the Lab Streaming Layer cannot be had. {why}. Or leave {option} out",
+                    why=why,
+                    option=option,
+                )
+            ) from None
         finally:
             if before is None:
                 os.environ.pop("LSLAPICFG", None)

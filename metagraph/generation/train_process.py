@@ -16,21 +16,11 @@ from time import monotonic
 import msgspec
 from msgspec import Struct
 
-from metagraph.common.extras import is_bundle
+from metagraph.common.extras import describe_missing_extra
 from metagraph.common.programs import make_python_command, start
 from metagraph.common.wording import phrase
 from metagraph.generation.train_plan import STOP, find_training_folder
 
-TORCH = phrase(
-    "Training needs torch, which is not installed: 200 MB to download, 750 MB on disk. Install it with\n"
-    "    pip install 'metagraph-studio[train]' --extra-index-url https://download.pytorch.org/whl/cpu\n"
-    "(Without that index, Linux gets several gigabytes for graphics cards.) You can use models without torch."
-)
-BUNDLED_TORCH = phrase(
-    "Training needs torch, which is not installed: 200 MB to download, 750 MB on disk. Install it with\n"
-    "    metagraph extras add train\n"
-    "You can use models without torch."
-)
 PATIENCE = 30.0  # seconds that a process may take to write its model once it is asked to stop
 
 
@@ -66,7 +56,7 @@ def find_missing_tools() -> str | None:
     """Return what to do before anything can be trained, in words; None if torch is installed."""
     if importlib.util.find_spec("torch") is not None:
         return None
-    return BUNDLED_TORCH if is_bundle() else TORCH
+    return describe_missing_extra("train", phrase("Training"))
 
 
 class TrainingProcess:

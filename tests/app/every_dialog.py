@@ -158,6 +158,8 @@ def _fault(w: Handles, _: Path) -> None:
 
 # By name; those that read something first open a little later.
 DIALOGS: dict[str, Open] = {
+    "extras": _command("extras"),
+    "news": _command("news"),
     "export": _command("export"),
     "label": _label,
     "patterns": _command("patterns"),

@@ -1,81 +1,26 @@
-"""Extras are installed into the user's folder of a bundle, whole or not at all."""
+"""What extras there are, and how each way of installing Metagraph gets them."""
 
 from __future__ import annotations
 
+import pickle
 import sys
 
 import pytest
 
 from metagraph.common import extras
-from metagraph.common.extras import EXTRAS, ExtraError
+from metagraph.common.extras import EXTRAS
+from metagraph.common.wording import phrase
+from metagraph.errors import FileError
 
 
 @pytest.fixture
-def bundle(tmp_path, monkeypatch):
-    """A bundle and a home; pip is replaced by what `told` says."""
+def install(tmp_path, monkeypatch):
+    """An installation whose marks are the files that are made in its folders."""
     (tmp_path / "program").mkdir()
-    (tmp_path / "program" / "bundled").touch()
+    (tmp_path / "python").mkdir()
     monkeypatch.setattr(extras, "ROOT", tmp_path / "program")
-    monkeypatch.setattr(extras, "find_user_folder", lambda kind: tmp_path / "home" / kind)
-    (tmp_path / "home" / "data").mkdir(parents=True)
-    monkeypatch.setattr(sys, "path", list(sys.path))
+    monkeypatch.setattr(sys, "prefix", str(tmp_path / "python"))
     return tmp_path
-
-
-def pip(code=0, said="", files=("made_up.py",)):
-    """Stand in for pip: write files where it is told to."""
-    from pathlib import Path
-
-    def run_program(command, timeout=None, **options):
-        place = Path(command[command.index("--target") + 1])
-        place.mkdir(parents=True)
-        for name in files:
-            (place / name).write_text("x = 1")
-        return code, said
-
-    return run_program
-
-
-def test_an_extra_comes_into_a_folder_of_its_own_and_can_be_imported(bundle, monkeypatch):
-    monkeypatch.setattr(extras, "run_program", pip())
-    extras.install_extra("lab")
-    place = extras.find_extras_folder() / "lab"
-    assert (place / "made_up.py").is_file() and sys.path[-1] == str(place)
-    assert not list(place.parent.parent.glob("*-new"))
-    assert extras.remove_extra("lab") and not place.exists()
-    assert not extras.remove_extra("lab"), "it is gone"
-
-
-def test_what_the_bundle_has_is_not_kept_twice(bundle, monkeypatch):
-    (extras.ROOT / "numpy.py").touch()
-    monkeypatch.setattr(extras, "run_program", pip(files=("numpy.py", "numba.py")))
-    extras.install_extra("lab")
-    assert [path.name for path in (extras.find_extras_folder() / "lab").iterdir()] == ["numba.py"]
-
-
-def test_what_fails_half_way_leaves_what_was_there(bundle, monkeypatch):
-    monkeypatch.setattr(extras, "run_program", pip())
-    extras.install_extra("lab")
-    monkeypatch.setattr(extras, "run_program", pip(1, "ERROR: no network", ("half.py",)))
-    with pytest.raises(ExtraError, match=r"no network.*Check the network"):
-        extras.install_extra("lab")
-    place = extras.find_extras_folder()
-    assert [path.name for path in (place / "lab").iterdir()] == ["made_up.py"]
-    assert [path.name for path in place.parent.iterdir()] == [place.name]
-
-
-def test_pip_that_hangs_is_reported(bundle, monkeypatch):
-    def hang(*_, **__):
-        raise TimeoutError("pip took more than 1800 s")
-
-    monkeypatch.setattr(extras, "run_program", hang)
-    with pytest.raises(ExtraError, match="1800 s"):
-        extras.install_extra("lab")
-
-
-def test_outside_a_bundle_the_command_is_named(monkeypatch):
-    with pytest.raises(ExtraError, match=r'pip install "metagraph-studio\[lab\]"'):
-        extras.install_extra("lab")
 
 
 def test_extras_are_those_that_the_package_offers():
@@ -87,58 +32,65 @@ def test_extras_are_those_that_the_package_offers():
         assert declared.get(name) == (None if extra.holds else [extra.wants[0]])
 
 
-@pytest.fixture
-def home(tmp_path, monkeypatch):
-    """A home, and a Metagraph that is no bundle."""
-    monkeypatch.setattr(extras, "find_user_folder", lambda kind: tmp_path / kind)
-    monkeypatch.setattr(sys, "version_info", (3, 12, 1))
-    return tmp_path
+@pytest.mark.parametrize(
+    ("marks", "way", "begins"),
+    [
+        (("program/bundled",), "bundle", "metagraph extras add lab"),
+        (("program/run.py", "python/.installed"), "run.py", "PYTHON -m pip install"),
+        (("program/run.py",), "pip", "PYTHON -m pip install"),
+        (("python/uv-receipt.toml",), "uv", "uv tool install metagraph-studio --with"),
+        (("python/pipx_metadata.json",), "pipx", 'pipx inject metagraph-studio "pylsl>=1.16"'),
+        ((), "pip", "PYTHON -m pip install"),
+    ],
+)
+def test_the_command_is_that_of_the_way_it_was_installed(install, marks, way, begins):
+    for mark in marks:
+        (install / mark).touch()
+    assert extras.find_way() == way
+    assert extras.can_install("lab") is (way in ("bundle", "run.py"))
+    python = extras.join_command([sys.executable])
+    assert extras.make_install_command("lab").startswith(begins.replace("PYTHON", python))
+    assert "pylsl" in extras.make_remove_command("lab") or way in ("bundle", "uv")
+    offline = extras.make_offline_command("lab")
+    assert way not in ("uv", "pipx") or f"{sys.executable} -m pip" not in offline, "they have no pip"
+    assert "metagraph-lab" in offline and ("--no-index" in offline or way == "bundle")
 
 
-def place_files(files, commands):
-    """Stand in for pip: write files where it is told to, and remember the command."""
-    from pathlib import Path
-
-    def run_program(command, timeout=None, **options):
-        commands.append(command)
-        for name in files:
-            path = Path(command[command.index("--target") + 1]) / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.touch()
-        return 0, ""
-
-    return run_program
+def test_a_tool_of_uv_keeps_its_other_extras_when_one_comes_or_goes(install, monkeypatch):
+    (install / "python" / "uv-receipt.toml").touch()
+    monkeypatch.setattr(extras, "is_installed", lambda name: name == "fbx")
+    added = extras.make_install_command("lab")
+    assert added == 'uv tool install metagraph-studio --with "ufbx>=0.0.5" --with "pylsl>=1.16"'
+    assert extras.make_remove_command("fbx") == "uv tool install metagraph-studio"
 
 
-def test_an_extra_that_lives_apart_is_installed_anywhere_and_never_imported(home, monkeypatch):
-    commands = []
-    monkeypatch.setattr(extras, "run_program", place_files(EXTRAS["camera"].holds, commands))
-    assert not extras.is_installed("camera") and extras.find_extra_folder("camera") is None
-    before = list(sys.path)
-    extras.install_extra("camera")
-    folder = extras.find_extra_folder("camera")
-    assert folder == home / "data" / "Metagraph" / "extras-3.12" / "camera"
-    assert extras.is_installed("camera") and sys.path == before
-    assert "--no-deps" in commands[0] and set(EXTRAS["camera"].wants) <= set(commands[0])
-    assert extras.remove_extra("camera") and not extras.is_installed("camera")
+def test_the_files_for_another_computer_are_named_exactly():
+    import numpy
+
+    line = extras.make_download_command("compiled")
+    assert line.startswith("python3 -m pip download --dest metagraph-compiled --only-binary :all:")
+    assert f"--python-version {sys.version_info[0]}.{sys.version_info[1]} " in line
+    assert '"numba>=0.60"' in line and f'"numpy=={numpy.__version__}"' in line
+    assert "download.pytorch.org" in extras.make_download_command("train")
+    assert "download.pytorch.org" not in extras.make_offline_command("train")
 
 
-def test_a_package_without_its_models_is_not_kept(home, monkeypatch):
-    commands = []
-    monkeypatch.setattr(extras, "run_program", place_files(["mediapipe/__init__.py"], commands))
-    with pytest.raises(ExtraError, match="lacks the files"):
-        extras.install_extra("camera")
-    assert not extras.is_installed("camera") and not list((home / "data" / "Metagraph").glob("*-new"))
+def test_a_missing_extra_is_found_in_what_is_said_of_it():
+    words = extras.describe_missing_extra("fbx", phrase("Reading FBX"))
+    error = pickle.loads(pickle.dumps(FileError("walk.fbx", "it is an FBX file", "on opening it", words)))
+    assert extras.find_missing_extra(error) == "fbx"
+    assert extras.find_missing_extra(error.words) == "fbx"
+    assert extras.find_missing_extra(str(error)) is None, "plain text says nothing"
+    assert extras.find_missing_extra(FileError("a", "b")) is None
+    assert "6 MB on disk" in words and "Help > Extras" in words
 
 
-def test_a_python_without_packages_is_told_which_there_are(home, monkeypatch):
-    monkeypatch.setattr(sys, "version_info", (3, 13, 0))
-    with pytest.raises(ExtraError, match=r"Python 3\.12 and older.*runs with Python 3\.13"):
-        extras.install_extra("camera")
-
-
-def test_a_folder_that_others_write_to_is_not_used(home, monkeypatch):
-    monkeypatch.setattr(extras, "run_program", place_files(EXTRAS["camera"].holds, []))
-    extras.install_extra("camera")
-    (home / "data" / "Metagraph" / "extras-3.12" / "camera").chmod(0o777)
-    assert not extras.is_installed("camera")
+def test_an_extra_that_lives_apart_is_got_in_one_way_wherever_metagraph_is(install):
+    for mark in ("python/uv-receipt.toml", "python/pipx_metadata.json"):
+        (install / mark).touch()
+        assert extras.can_install("camera") and not extras.can_install("lab")
+        assert extras.make_install_command("camera") == "metagraph extras add camera"
+        assert extras.make_remove_command("camera") == "metagraph extras remove camera"
+    assert "mediapipe" not in extras.make_install_command("lab"), "it is no package of this environment"
+    assert " --no-deps " in extras.make_download_command("camera")
+    assert extras.make_offline_command("camera").startswith("metagraph extras add camera --from")

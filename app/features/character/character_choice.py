@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.shell.context import Shell
 from app.translation import tr, tr_error
+from metagraph.common.studio import find_start_folder
 
 
 def choose_character(shell: Shell) -> None:
@@ -16,7 +17,7 @@ def choose_character(shell: Shell) -> None:
     name, _ = QFileDialog.getOpenFileName(
         shell.widget,
         tr("Choose the character to draw"),
-        str(document.folder or Path.home()),
+        str(find_start_folder(document.folder)),
         tr("Characters (*.glb *.gltf *.vrm)"),
     )
     if not name:

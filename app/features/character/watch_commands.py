@@ -16,6 +16,7 @@ from app.shell.command_table import Feature
 from app.shell.context import Shell
 from app.stage.watch import MOST_GHOSTS, SPACINGS, Watch, Watched
 from app.translation import format_number, tr, tr_error, tr_noop
+from metagraph.common.studio import find_start_folder
 
 if TYPE_CHECKING:
     from app.features.character.reference import Reference
@@ -252,7 +253,7 @@ def choose_reference(shell: Shell, reference: Reference) -> None:
     """Ask which video the character is compared with."""
     from app.features.character.reference import FILES
 
-    folder = reference.path.parent if reference.path is not None else shell.document.folder or Path.home()
+    folder = reference.path.parent if reference.path is not None else find_start_folder(shell.document.folder)
     name, _ = QFileDialog.getOpenFileName(
         shell.widget, tr("Choose a reference video"), str(folder), tr(FILES)
     )

@@ -14,6 +14,7 @@ from app.project.document import Edit
 from app.project.files import Files
 from app.project.speech_files import SOUNDS, TRANSCRIPTS, find_transcripts_beside, sort_speech_files
 from app.translation import tr, tr_error, tr_phrase
+from metagraph.common.studio import find_start_folder
 from metagraph.errors import FileError
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import MOST_SPEAKERS, Conversation
@@ -43,7 +44,7 @@ def ask_for_conversation(shell: Shell, paths: Sequence[Path] = ()) -> None:
     if shell.services[Files].refuse():
         return
     if not paths:
-        start = str(shell.document.folder or Path.home())
+        start = str(find_start_folder(shell.document.folder))
         names, _ = QFileDialog.getOpenFileNames(
             shell.widget,
             tr("Conversation from sound: one file, or one file for each speaker"),
@@ -146,7 +147,7 @@ def write_segments(shell: Shell) -> None:
         write_conversation,
     )
 
-    start = (shell.document.folder or Path.home()) / f"{found[1].name}.eaf"
+    start = find_start_folder(shell.document.folder) / f"{found[1].name}.eaf"
     endings = {f"{tr_phrase(kind.name)} (*{kind.ending})": kind.ending for kind in CONVERSATION_OUTPUTS}
     name, chosen = QFileDialog.getSaveFileName(
         shell.widget, tr("Export conversation"), str(start), ";;".join(endings)

@@ -23,6 +23,7 @@ from app.project.speech_files import SOUNDS, count_channels
 from app.translation import tr, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
+from metagraph.common.studio import find_start_folder
 from metagraph.formats.store import SUFFIX, make_path_relative
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.edit_error import EditError
@@ -193,7 +194,7 @@ class SidesDialog(SettingDialog):
 
     def _ask(self, field: QLineEdit, title: str, kinds: str) -> bool:
         folder = self.document.folder
-        name, _ = QFileDialog.getOpenFileName(self, title, str(folder or Path.home()), kinds)
+        name, _ = QFileDialog.getOpenFileName(self, title, str(find_start_folder(folder)), kinds)
         if name:
             field.setText(
                 make_path_relative(Path(name), folder) if folder is not None else Path(name).as_posix()

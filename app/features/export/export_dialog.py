@@ -40,6 +40,7 @@ from app.project.reveal import open_folder
 from app.translation import tr, tr_error, tr_phrase, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.tree_items import list_items_below, list_top_items
+from metagraph.common.studio import find_export_folder
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.placing import ForeignFilesError
 from metagraph.engines.targets.target import Contents, ExportTarget, TargetReport
@@ -228,7 +229,7 @@ class ExportDialog(QDialog):
         """Return the folder a target goes to unless another is chosen: one of its own, since exports share
         names of files.
         """
-        folder = self.document.folder or Path.home()
+        folder = find_export_folder(self.document.folder)
         return str(folder / f"{self.document.project.name}-export" / target)
 
     def _name_folder(self, folder: str) -> None:

@@ -11,6 +11,7 @@ from app.features.files.import_report import show_report
 from app.project.files import PRACTICE, SAMPLE, SEATED, Files
 from app.project.importing import Importing
 from app.project.label_files import LabelFiles
+from app.project.second_start import SecondStarts, is_handed_over
 from app.project.watching import Watcher
 from app.shell.actions import Command, Standard
 from app.shell.command_table import Feature
@@ -133,6 +134,15 @@ class FileFeature(Feature):
     def watches(self) -> bool:
         return self.watcher.on
 
+    # --- other starts
+
+    def toggle_second_start(self) -> None:
+        self.shell.services[SecondStarts].choose(not is_handed_over())
+        self.shell.actions.refresh()
+
+    def takes_second_start(self) -> bool:
+        return is_handed_over()
+
     # --- history
 
     def undo(self) -> None:
@@ -157,6 +167,15 @@ class FileFeature(Feature):
 COMMANDS = (
     Command("new", FILE, "project", tr_noop("&New project"), FileFeature.new, (Standard.New,)),
     Command("open", FILE, "project", tr_noop("&Open…"), FileFeature.ask_open, (Standard.Open,)),
+    Command(
+        "second_start",
+        "&View",
+        "look",
+        tr_noop("&Open from the desktop in this window"),
+        FileFeature.toggle_second_start,
+        tip=tr_noop("What you open in the desktop comes into this window, not into a second one"),
+        checked=FileFeature.takes_second_start,
+    ),
     Command("recent", FILE, "project", tr_noop("Open &recent"), fill=FileFeature.fill_recent),
     Command("sample", FILE, "examples", tr_noop("Open the &sample project"), FileFeature.open_sample),
     Command(

@@ -13,6 +13,7 @@ from app.project.document import Document
 from app.project.importing import Importing
 from app.translation import tr, tr_noop, tr_phrase
 from app.widgets.making import make_widget
+from metagraph.common.extras import find_missing_extra
 from metagraph.formats.import_words import (
     Remedy,
     count_alike,
@@ -89,6 +90,8 @@ class ImportLine(QToolBar):
         self.words.setText(tr_phrase(words))
         self.words.setToolTip(tr_phrase(words))
         self.why.setVisible(bool(result.failures or result.notes))
+        if any(find_missing_extra(line) for line in result.failures):
+            self._offer(tr("Extras…"), lambda: self._do("extras"))
         for remedy in list_remedies(result):
             self._offer(tr_phrase(remedy.label), partial(self._mend, remedy))
         if unlabelled and not fresh:  # what came in goes on all the same

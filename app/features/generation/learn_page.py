@@ -41,10 +41,12 @@ from app.features.generation.training_run import (
 from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
+from app.shell.extras_dialog import ExtrasOffer
 from app.stage.session import StageSession
 from app.translation import make_lazy_texts, tr, tr_phrase, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, SpinBox
+from metagraph.common.studio import find_start_folder
 from metagraph.generation.standing import Standing, is_busy
 from metagraph.generation.stored import SUFFIX
 from metagraph.generation.train_plan import PLAN, find_training_folder, read_planned_takes
@@ -187,6 +189,9 @@ class LearnPage(GenerationPage):
         self.needs.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.needs.setVisible(bool(self.needs.text()))
         box.addWidget(self.needs)
+        self.extras = ExtrasOffer(self.jobs, self, self._look_for_tools)
+        self.extras.follow(describe_missing_training())
+        box.addWidget(self.extras, 0, Qt.AlignmentFlag.AlignLeft)
         self.plots = TrainingPlots(self.session, self)
         box.addWidget(self.plots, 2)
         self.preview = SamplePreview(self)
@@ -202,10 +207,18 @@ class LearnPage(GenerationPage):
         self.progress.hide()
         return box
 
+    def _look_for_tools(self) -> None:
+        """Show whether training is possible now."""
+        missing = describe_missing_training()
+        self.needs.setText(tr_phrase(missing or ""))
+        self.needs.setVisible(missing is not None)
+        self.extras.follow(missing)
+        self._enable()
+
     # --- takes
 
     def choose_folder(self) -> None:
-        start = str(self.folders[-1] if self.folders else self.document.folder or Path.home())
+        start = str(self.folders[-1] if self.folders else find_start_folder(self.document.folder))
         name = QFileDialog.getExistingDirectory(self, tr("A folder of takes"), start)
         if name:
             self.look_through([*self.folders, Path(name)])

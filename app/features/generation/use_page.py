@@ -38,6 +38,7 @@ from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_noop, tr_phrase, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
+from metagraph.common.studio import find_start_folder
 from metagraph.errors import FileError
 from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.offered import list_models, name_model
@@ -209,7 +210,7 @@ class UsePage(GenerationPage):
         self._fill_models(path)
 
     def choose_model(self) -> None:
-        start = str(self.document.folder or Path.home())
+        start = str(find_start_folder(self.document.folder))
         name, _ = QFileDialog.getOpenFileName(
             self, tr("Choose a model"), start, tr("Models (*{suffix})", suffix=SUFFIX)
         )
@@ -236,7 +237,7 @@ class UsePage(GenerationPage):
     def _choose_sound(self) -> None:
         from app.project.speech_files import SOUNDS
 
-        start, kinds = str(self.document.folder or Path.home()), " ".join(f"*{s}" for s in SOUNDS)
+        start, kinds = str(find_start_folder(self.document.folder)), " ".join(f"*{s}" for s in SOUNDS)
         name, _ = QFileDialog.getOpenFileName(
             self, tr("Choose a sound"), start, tr("Sounds ({kinds})", kinds=kinds)
         )

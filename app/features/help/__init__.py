@@ -65,6 +65,32 @@ def list_named_parts(shell: Shell) -> Iterator[Entry]:
                 yield Entry(group, make_readable_name(action.name), run=run, by_name=True)
 
 
+def show_about(shell: Shell) -> None:
+    """Show what this program is."""
+    from metagraph import __version__
+
+    kinds = " &nbsp; ".join(f"{KIND_MARKS[k]} {tr(k)}" for k in KINDS)
+    text = tr(
+        "<h3>Metagraph {version}</h3><p>Drop clips to build a state machine.</p><p>{kinds}</p>",
+        version=__version__,
+        kinds=kinds,
+    )
+    box = QMessageBox(QMessageBox.Icon.NoIcon, tr("About Metagraph"), text, parent=shell.widget)
+    box.setTextFormat(Qt.TextFormat.RichText)
+    box.setIconPixmap(box.windowIcon().pixmap(64))
+    box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    box.open()
+
+
+def show_news(shell: Shell, release: object = None) -> None:
+    """Show what is new in this version, or in a newer release."""
+    from app.features.help.news_dialog import NewsDialog
+    from app.shell.update_check import Release
+
+    found = release if isinstance(release, Release) else None
+    NewsDialog(shell.jobs, shell.settings, shell.widget, found).open()
+
+
 def contribute(shell: Shell) -> Contribution:
     def entries(keyed: bool) -> Iterator[Entry]:
         """Return every command as it can be used now; keyed: only those with keys."""
@@ -128,20 +154,10 @@ def contribute(shell: Shell) -> Contribution:
 
         SystemReportDialog(shell.widget).open()
 
-    def about() -> None:
-        from metagraph import __version__
+    def list_extras() -> None:
+        from app.shell.extras_dialog import show_extras
 
-        kinds = " &nbsp; ".join(f"{KIND_MARKS[k]} {tr(k)}" for k in KINDS)
-        text = tr(
-            "<h3>Metagraph {version}</h3><p>Drop clips to build a state machine.</p><p>{kinds}</p>",
-            version=__version__,
-            kinds=kinds,
-        )
-        box = QMessageBox(QMessageBox.Icon.NoIcon, tr("About Metagraph"), text, parent=shell.widget)
-        box.setTextFormat(Qt.TextFormat.RichText)
-        box.setIconPixmap(box.windowIcon().pixmap(64))
-        box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        box.open()
+        show_extras(shell.widget, shell.jobs)
 
     return Contribution(
         commands=(
@@ -166,6 +182,14 @@ def contribute(shell: Shell) -> Contribution:
                 tip=tr("Find commands, panels, stances and actions by name"),
             ),
             Command(
+                "extras",
+                "&Help",
+                "",
+                tr("&Extras…"),
+                list_extras,
+                tip=tr("Install packages that some jobs need: motion graphs, FBX, training, lab recorders"),
+            ),
+            Command(
                 "system_report",
                 "&Help",
                 "",
@@ -173,6 +197,14 @@ def contribute(shell: Shell) -> Contribution:
                 report_system,
                 tip=tr("Versions, drawing and folders, for a report of a fault"),
             ),
-            Command("about", "&Help", "", tr("&About Metagraph"), about, study=True),
+            Command(
+                "news",
+                "&Help",
+                "",
+                tr("What is &new"),
+                partial(show_news, shell),
+                tip=tr("What this version brings, and whether there is a newer one"),
+            ),
+            Command("about", "&Help", "", tr("&About Metagraph"), partial(show_about, shell), study=True),
         ),
     )

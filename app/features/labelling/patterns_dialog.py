@@ -46,6 +46,7 @@ from app.stage.session import StageSession
 from app.translation import make_lazy_texts, tr, tr_error, tr_noop, tr_phrase, tr_plural
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import get_vocabulary_word
+from metagraph.common.studio import find_start_folder
 from metagraph.errors import FileError
 from metagraph.suggest.words.names import NameGuess, Patterns, PatternsError, merge_patterns, read_names
 from metagraph.suggest.words.patterns import FIELDS
@@ -361,7 +362,7 @@ class PatternsDialog(QDialog):
 
     def _import(self) -> None:
         name, _ = QFileDialog.getOpenFileName(
-            self, tr("Import name patterns"), str(self.document.folder or Path.home()), tr(FILTER)
+            self, tr("Import name patterns"), str(find_start_folder(self.document.folder)), tr(FILTER)
         )
         if name:
             try:
@@ -382,7 +383,7 @@ class PatternsDialog(QDialog):
             )
 
     def _export(self) -> None:
-        start = (self.document.folder or Path.home()) / "name-patterns.json"
+        start = find_start_folder(self.document.folder) / "name-patterns.json"
         name, _ = QFileDialog.getSaveFileName(self, tr("Export name patterns"), str(start), tr(FILTER))
         if name:
             path = Path(name) if Path(name).suffix else Path(name + ".json")

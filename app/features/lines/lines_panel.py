@@ -39,6 +39,7 @@ from app.translation import format_number, make_lazy_texts, tr, tr_error, tr_noo
 from app.widgets.drop_frame import DropFrame
 from app.widgets.flow import FlowLayout
 from app.widgets.making import make_widget
+from metagraph.common.studio import find_start_folder
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import Project
@@ -319,7 +320,7 @@ class LinesPanel(QWidget):
         paths, _ = QFileDialog.getOpenFileNames(
             self,
             tr("Add lines"),
-            str(self.document.folder or Path.home()),
+            str(find_start_folder(self.document.folder)),
             tr("Sounds and lists ({names})", names=names),
         )
         if paths:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtWidgets import QMessageBox
 
 from app.project.jobs import WindowJob
-from app.translation import tr, tr_error
-from metagraph.common.extras import EXTRAS, install_extra, is_installed
+from app.translation import tr, tr_error, tr_phrase
+from metagraph.common.extra_steps import install_extra
+from metagraph.common.extras import EXTRAS, is_installed
 from metagraph.formats.filmed.estimator import EXTRA
 from metagraph.formats.filmed.film import film_video
 from metagraph.mimicry.keypoint_layouts import KeypointTrack
@@ -69,9 +70,13 @@ def _when_installed(shell: Shell, begin: Callable[[], None]) -> None:
     def failed(error: Exception) -> None:
         QMessageBox.warning(shell.widget, tr("Not installed"), tr_error(error))
 
-    shell.jobs.start(
-        tr("Installing {name}", name="MediaPipe"), lambda _: install_extra(EXTRA), done, failed, stands=True
-    )
+    def work(job: WindowJob) -> None:
+        def tell(share: float, words: str) -> None:
+            job.tell(round(100 * share), 100, tr_phrase(words))
+
+        install_extra(EXTRA, tell, lambda: job.cancelled)
+
+    shell.jobs.start(tr("Installing {name}", name=tr_phrase(extra.title)), work, done, failed, stands=True)
 
 
 def _start(shell: Shell, file: Path, show: Callable[[KeypointTrack], None]) -> None:

@@ -27,6 +27,7 @@ from app.features.mimic.filmed_keypoints import film_person, read_video
 from app.look.theme import strengthen
 from app.project.jobs import WindowJob
 from app.translation import format_number, tr, tr_error, tr_noop, tr_plural
+from metagraph.common.studio import find_start_folder
 from metagraph.formats.filmed.video import VIDEO_ENDINGS, is_video
 from metagraph.formats.keypoints.reader import read_keypoints
 from metagraph.graph.editing import performances as performance_edits
@@ -210,7 +211,7 @@ def pick_recording(file: Path) -> Path:
 def open_keypoints(shell: Shell, path: str | Path | None = None) -> None:
     """Ask for keypoints or a video (or take `path`), read them on a thread and open the dialog."""
     if not path:
-        start = str(QSettings().value("mimic/folder") or shell.document.folder or Path.home())
+        start = str(QSettings().value("mimic/folder") or find_start_folder(shell.document.folder))
         kinds = tr(FILTER, videos=" ".join(f"*{ending}" for ending in VIDEO_ENDINGS))
         path, _ = QFileDialog.getOpenFileName(shell.widget, tr("Mimic a person"), start, kinds)
         if not path:

@@ -44,6 +44,7 @@ from app.translation import group_thousands, make_lazy_texts, tr, tr_context, tr
 from app.widgets.act_strip import ActStrip, format_clock
 from app.widgets.form_fields import Seconds
 from app.widgets.making import make_widget
+from metagraph.common.studio import find_start_folder
 from metagraph.formats.elan import read_elan
 from metagraph.graph.model import LAYERS, Layer
 from metagraph.playback.learning.annotation import (
@@ -479,7 +480,7 @@ def open_annotation(
     dialog.
     """
     if not path:
-        start = str(shell.document.folder or Path.home())
+        start = str(find_start_folder(shell.document.folder))
         path, _ = QFileDialog.getOpenFileName(shell.widget, tr("Import annotation"), start, tr(FILTER))
         if not path:
             return

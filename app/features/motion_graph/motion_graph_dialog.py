@@ -37,6 +37,7 @@ from app.features.motion_graph.takes_list import TakesList
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.project.new_clips import cut_into_pieces, save
+from app.shell.extras_dialog import ExtrasOffer
 from app.stage.session import StageSession
 from app.translation import group_thousands, tr, tr_error, tr_noop, tr_plural
 from app.widgets.making import make_widget
@@ -195,8 +196,9 @@ class MotionGraphDialog(QDialog):
         self.stop.hide()
         close = QPushButton(tr("Close"), self, autoDefault=False)
         close.clicked.connect(self.close)
+        self.extras = ExtrasOffer(self.jobs, self)
         row.addWidget(self.said, 1)
-        for widget in (self.progress, self.stop, close):
+        for widget in (self.extras, self.progress, self.stop, close):
             row.addWidget(widget)
         return row
 
@@ -304,6 +306,7 @@ class MotionGraphDialog(QDialog):
         if self._job is not None:
             return
         self.said.setText("")
+        self.extras.follow("")
         self._long.start()
         job = self.jobs.start(title, work, done, self._failed)
         self._job = job
@@ -343,6 +346,7 @@ class MotionGraphDialog(QDialog):
             self.said.setText(tr("Cancelled. Nothing was changed."))
 
     def _failed(self, error: Exception) -> None:
+        self.extras.follow(error)
         text = tr_error(error)
         self.said.setText(f"{text[:1].upper()}{text[1:].rstrip('.')}.")
 

@@ -28,6 +28,7 @@ from app.stage.render_process import SUFFIXES, RenderOrder, write_rendering
 from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_noop
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
+from metagraph.common.studio import find_start_folder
 from metagraph.graph import requests
 from metagraph.graph.conversation.model import Conversation
 from preview.looks import BACKDROPS, LIGHTS, look_name
@@ -86,7 +87,7 @@ class RenderDialog(QDialog):
         self.kind.activated.connect(lambda _: self._suffixed())
         self.form.addRow(tr("Format"), self.kind)
         row = QHBoxLayout()
-        folder = self.performance.document.folder or Path.home()
+        folder = find_start_folder(self.performance.document.folder)
         self.file = QLineEdit(str(folder / f"{name}.mp4"), self)
         self.file.setAccessibleName(tr("File"))
         browse = QPushButton(tr("Choose…"), self, autoDefault=False)

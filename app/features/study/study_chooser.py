@@ -68,7 +68,7 @@ def begin_sitting(shell: Shell, study: Study, participant: str, experimenter: bo
     try:
         guide = Guide(shell, study, participant, experimenter)
     except (FileError, ValueError) as error:
-        QMessageBox.warning(shell.widget, tr("This sitting cannot start"), tr_error(error))
+        shell.services[Files].show_warning(tr("This sitting cannot start"), error)
         return None
     guide.show()
     return guide

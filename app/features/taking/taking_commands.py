@@ -14,6 +14,7 @@ from app.shell.actions import Command
 from app.shell.command_table import Feature, has_actions_selected, require_any
 from app.shell.context import Shell
 from app.translation import tr, tr_noop, tr_plural
+from metagraph.common.studio import find_start_folder
 from metagraph.formats.store import SUFFIX
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ class TakingFeature(Feature):
         chosen, _ = QFileDialog.getOpenFileName(
             self.shell.widget,
             tr("Import a project"),
-            str(self.document.folder or Path.home()),
+            str(find_start_folder(self.document.folder)),
             tr("Projects (*{suffix});;All files (*)", suffix=SUFFIX),
         )
         if chosen:

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from metagraph.common.budgets import MOTION_FILE
+from metagraph.common.extras import describe_missing_extra
 from metagraph.common.files import check_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
@@ -38,9 +39,9 @@ def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection
     if importlib.util.find_spec("ufbx") is None:
         raise FileError(
             path,
-            phrase("reading FBX needs the ufbx library, which is not installed"),
+            phrase("it is an FBX file"),
             phrase("on opening it"),
-            phrase("Run: pip install 'metagraph-studio[fbx]'"),
+            describe_missing_extra("fbx", phrase("Reading FBX")),
         )
     data = _converted(path, timeout)
     gltf = parse_gltf(path, data)
@@ -92,7 +93,7 @@ def _told(path: Path, error: ReaderError, timeout: float) -> FileError:
             path,
             phrase("the ufbx library is installed but does not load"),
             phrase("on opening it"),
-            phrase("Run: pip install --force-reinstall 'metagraph-studio[fbx]'"),
+            phrase("Remove the extra 'fbx' and install it again: Help > Extras"),
         )
     if code == fbx_child.REFUSED:
         return FileError(

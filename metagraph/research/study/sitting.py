@@ -219,7 +219,7 @@ class Sitting:
             try:
                 send = open_marker_outlet(participant)
             except LabStreamError as error:
-                raise SittingError(str(error)) from None
+                raise SittingError(error.args[0]) from None
         self.writer = Writer(study.log(participant))
         self.writer.listeners += [send] if send is not None else []
         try:

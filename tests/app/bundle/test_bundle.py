@@ -52,7 +52,7 @@ def test_the_launcher_starts_the_python_beside_it_from_anywhere_also_by_a_link(b
 def test_the_menu_entry_and_the_type_of_projects_are_well_formed():
     entry = configparser.ConfigParser(interpolation=None)
     entry.read(LAUNCHER / "metagraph.desktop", encoding="utf-8")
-    assert entry["Desktop Entry"]["Exec"] == "metagraph window %f"
+    assert entry["Desktop Entry"]["Exec"] == "metagraph window %F"
     kinds = ET.parse(LAUNCHER / "metagraph.xml").getroot()
     pattern = kinds.find(".//{*}glob").get("pattern")
     assert pattern == "*.metagraph.yaml"
@@ -101,3 +101,33 @@ def test_the_systems_own_libraries_are_left_to_it():
     assert libraries.find_library("no such library.so.1") is None
     assert all(libraries.is_left_to_system(name) for name in ("libc.so.6", "libGL.so.1", "libX11.so.6"))
     assert not any(libraries.is_left_to_system(name) for name in ("libxcb-cursor.so.0", "libffi.so.8"))
+
+
+def test_removing_the_package_says_where_caches_are_and_deletes_nothing_of_a_user(tmp_path):
+    environment = {"PATH": "/usr/bin:/bin", "HOME": str(tmp_path)}
+    journal = tmp_path / ".local" / "share" / "Metagraph" / "Metagraph" / "journal"
+    journal.parent.mkdir(parents=True)
+    journal.touch()
+    said = subprocess.run(
+        ["sh", LAUNCHER / "postrm", "remove"], capture_output=True, text=True, check=True, env=environment
+    ).stdout
+    assert "journals of unsaved work stay" in said and journal.exists()
+    (line,) = [line for line in said.splitlines() if line.strip().startswith("rm ")]
+    for place in (tmp_path / ".cache" / "metagraph", journal.parents[1] / "extras-3.11"):
+        place.mkdir(parents=True)
+    subprocess.run(["sh", "-c", line], check=True, env=environment)
+    assert journal.exists() and not (tmp_path / ".cache" / "metagraph").exists()
+    assert not (journal.parents[1] / "extras-3.11").exists()
+
+
+def test_the_address_of_updates_must_be_one_that_is_asked(tmp_path):
+    with pytest.raises(ValueError, match="does not begin with https"):
+        folder.make_folder(tmp_path, updates="http://example.org/latest.json")
+    assert not list(tmp_path.iterdir())
+
+
+def test_pip_is_not_compiled_beforehand_and_all_else_is():
+    import re
+
+    assert re.search(folder.UNCOMPILED, "/x/site-packages/pip/_vendor/a.py")
+    assert not re.search(folder.UNCOMPILED, "/x/site-packages/metagraph/common/pip_words.py")

@@ -11,7 +11,7 @@ import pytest
 
 from app.cli import filmed_keypoints
 from app.cli.parser import main
-from metagraph.common import extras
+from metagraph.common import extra_steps
 from metagraph.formats.clips import read_clips
 from tests.films import install_stand_in, make_film, remove_stand_in
 
@@ -95,7 +95,7 @@ def test_at_a_terminal_somebody_is_asked_before_it_is_installed(
 
     monkeypatch.setattr(sys, "stdin", Terminal(answer + "\n"))
     assert not hasattr(filmed_keypoints, "install_extra"), "it is imported when it is needed"
-    monkeypatch.setattr(extras, "install_extra", lambda name: install_stand_in(tmp_path, monkeypatch))
+    monkeypatch.setattr(extra_steps, "install_extra", lambda name: install_stand_in(tmp_path, monkeypatch))
     code = main(["mimic", str(SAMPLE), str(path), "--no-mirror"])
     said = capsys.readouterr()
     assert "Install it? [y/N]" in said.out and "150 MB" in said.out

@@ -19,6 +19,7 @@ import soundfile
 
 from app.cli import generate_training
 from app.cli.parser import main
+from metagraph.common.extras import describe_missing_extra
 from metagraph.formats.clips import read_clips
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.store import open_project, save_project
@@ -454,7 +455,8 @@ def test_takes_none_of_which_can_be_used_are_an_error(
 def test_without_torch_it_is_said_what_to_install(
     takes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(train_process, "find_missing_tools", lambda: train_process.TORCH)
+    missing = describe_missing_extra("train", "Training")
+    monkeypatch.setattr(train_process, "find_missing_tools", lambda: missing)
     text = run(capsys, "train", takes, "-o", tmp_path / "m.mgmodel", code=1)
     assert "pip install" in text and "750 MB" in text
     assert not [p for p in tmp_path.iterdir() if p.name != "data"]

@@ -29,7 +29,7 @@ def test_a_project_is_saved_as_often_as_the_user_wants(
     if given:
         save_project(Project(), path)
 
-    def use(project: Path | None, sample: bool, clip: str | None) -> int:
+    def use(project: Path | None, sample: bool, clip: str | None, clips: object) -> int:
         document = Document()
         document.lock = Lock(path, make_owner())
         document.lock.acquire()

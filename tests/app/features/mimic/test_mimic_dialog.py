@@ -14,7 +14,7 @@ from app.features.mimic import filmed_keypoints
 from app.features.mimic.camera_dialog import CameraDialog
 from app.features.mimic.mimic_dialog import MimicDialog, pick_recording
 from app.project.files import SAMPLE
-from metagraph.common.extras import ExtraError
+from metagraph.common.extra_steps import ExtraError
 from metagraph.graph import requests as a
 from tests.films import install_stand_in, make_film, remove_stand_in
 
@@ -185,14 +185,14 @@ def test_without_mediapipe_the_user_is_asked_and_may_decline_or_install(
     wanted, said = "Install", list[str]()
     monkeypatch.setattr(QMessageBox, "warning", lambda *words: said.append(str(words[2])))
 
-    def install(name: str) -> None:
+    def install(name: str, *_: object) -> None:
         raise ExtraError("It could not be installed (no network).")
 
     monkeypatch.setattr(filmed_keypoints, "install_extra", install)
     opened.actions["mimic"].trigger()
     opened.wait(lambda: bool(said))
     assert said == ["It could not be installed (no network)."]
-    monkeypatch.setattr(filmed_keypoints, "install_extra", lambda _: install_stand_in(tmp_path, monkeypatch))
+    monkeypatch.setattr(filmed_keypoints, "install_extra", lambda *_: install_stand_in(tmp_path, monkeypatch))
     opened.actions["mimic"].trigger()
     opened.wait(lambda: bool(opened.window.findChildren(MimicDialog)))
     opened.window.findChild(MimicDialog).reject()

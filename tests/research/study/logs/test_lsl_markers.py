@@ -42,13 +42,13 @@ def test_kinds_and_numbers_are_sent_and_nothing_else(monkeypatch: pytest.MonkeyP
 
 def test_where_there_is_no_layer_the_remedy_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pylsl", None)
-    with pytest.raises(LabStreamError, match=r"metagraph-studio\[lab\]"):
+    with pytest.raises(LabStreamError, match=r"pip install .*pylsl.*'lsl: true'"):
         open_marker_outlet("P01")
 
 
 def test_in_a_bundle_the_command_that_installs_it_there_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pylsl", None)
-    monkeypatch.setattr("metagraph.common.lab_streaming.is_bundle", lambda: True)
+    monkeypatch.setattr("metagraph.common.extras.is_bundle", lambda: True)
     with pytest.raises(LabStreamError, match="metagraph extras add lab"):
         open_marker_outlet("P01")
 
