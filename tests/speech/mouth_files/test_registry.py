@@ -129,3 +129,15 @@ def test_a_line_without_sound_lasts_as_long_as_its_shapes(tmp_path: Path) -> Non
         name, text = MADE_MOUTHS[kind]
         (tmp_path / name).write_text(text, encoding="utf-8")
         assert make_voice_from_phones(tmp_path / name).duration == pytest.approx(2.0, abs=0.03)
+
+
+def test_the_phones_of_other_speakers_are_told(tmp_path: Path) -> None:
+    tiers = "".join(
+        f'"IntervalTier"\n"{who} - phones"\n0\n1\n1\n0\n1\n"{phone}"\n'
+        for who, phone in (("Ann", "AA1"), ("Bob", "IY1"))
+    )
+    path = tmp_path / "two.TextGrid"
+    path.write_text(f'File type = "ooTextFile"\nObject class = "TextGrid"\n\n0\n1\n<exists>\n2\n{tiers}')
+    found = read_mouth_file(path)
+    assert [p.viseme for p in found.pieces] == ["aa"]
+    assert found.notes == ("its phones are those of tier 'Ann - phones'; not read: 'Bob - phones'",)
