@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.wording import phrase
@@ -51,3 +52,10 @@ def find_metres(path: Path, unit: str) -> float:
             phrase("Export it in millimetres or metres."),
         )
     return METRES[word]
+
+
+def hide_zeros(places: Array) -> None:
+    """Say of markers `[F, M, 3]` that lie exactly in the origin that they were not seen, in place: many
+    programs write zeros for them.
+    """
+    places[(places == 0.0).all(-1)] = np.nan
