@@ -74,6 +74,15 @@ def test_what_was_inferred_is_told(tmp_path: Path, kind: str, told: str) -> None
     assert any(told in note for note in read(tmp_path, kind).notes)
 
 
+def test_a_first_column_that_counts_frames_is_no_time(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    rows = [[n, *(float(k == (1 if n < 60 else 10)) for k in range(15))] for n in range(120)]
+    path.write_text("\n".join(",".join(map(str, row)) for row in rows))
+    found = read_mouth_file(path, 2.0)
+    assert (shown(found, 0.5), shown(found, 1.5)) == ("PP", "aa") and found.end < 2.0
+    assert found.notes == ("it has no times: its frames lie evenly over 2.00 s",)
+
+
 def test_moho_frames_that_do_not_fit_the_sound_are_at_a_higher_rate(tmp_path: Path) -> None:
     found = read(tmp_path, "moho, rhubarb", 0.8)
     assert found.pieces[0].start == pytest.approx(0.25) and any("48 were taken" in n for n in found.notes)
