@@ -5,7 +5,7 @@ made from this list (`docs/readers_page.py`).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from metagraph.common.budgets import MARKS_FILE
@@ -158,4 +158,13 @@ def read_mouth_file(path: str | Path, sound: float | None = None) -> MouthShapes
             phrase("its beginning"),
             phrase("Known formats are {names}.", names=names),
         )
-    return reader.read(file)
+    found = reader.read(file)
+    if sound is None or found.end <= 1.25 * sound + 1.0:
+        return found
+    told = phrase(
+        "its shapes end at {end:.1f} s and the sound at {sound:.1f} s: it may be of another sound, or its "
+        "times in another unit",
+        end=found.end,
+        sound=sound,
+    )
+    return replace(found, notes=(*found.notes, told))

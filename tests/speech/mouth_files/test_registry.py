@@ -150,3 +150,36 @@ def test_the_phones_of_other_speakers_are_told(tmp_path: Path) -> None:
     found = read_mouth_file(path)
     assert [p.viseme for p in found.pieces] == ["aa"]
     assert found.notes == ("its phones are those of tier 'Ann - phones'; not read: 'Bob - phones'",)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "told"),
+    [
+        ("a.tsv", "0,00\tX\n0,50\tD\n1,00\tA\n1,50\tX\n", "its decimal commas were read as points"),
+        ("a.csv", "0,00;X\n0,50;D\n1,00;A\n1,50;X\n", "its decimal commas were read as points"),
+        ("a.csv", "start,duration,phone\n0.0,0.5,sil\n0.5,0.5,AA1\n1.0,0.5,M\n", "ARPAbet"),
+        ("a.lab", "separator ;\nnfields 1\n#\n0.5 121 pau\n1.0 121 aa\n1.5 121 m\n1.9 121 pau\n", "ARPAbet"),
+        ("a.json", '[{"start": 0.5, "duration": 0.5, "value": "aa"}, '
+         '{"start": 1, "duration": 0.5, "value": "PP"}]', "Oculus"),
+    ],
+    ids=["commas and tabs", "commas and semicolons", "durations", "xwaves labels", "durations in JSON"],
+)  # fmt: skip
+def test_tables_mean_what_their_programs_mean_by_them(
+    tmp_path: Path, name: str, text: str, told: str
+) -> None:
+    path = tmp_path / name
+    path.write_text(text)
+    found = read_mouth_file(path, 2.0)
+    assert [shown(found, t) for t in (0.2, 0.55, 0.95, 1.05, 1.45, 1.7)] == [
+        "sil", "aa", "aa", "PP", "PP", "sil",
+    ]  # fmt: skip
+    assert any(told in note for note in found.notes)
+
+
+def test_shapes_that_end_long_after_the_sound_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "frames.tsv"
+    path.write_text("1\tX\n12\tD\n20\tB\n47\tX\n")
+    assert any(
+        "its shapes end at 47.2 s and the sound at 2.0 s" in x for x in read_mouth_file(path, 2.0).notes
+    )
+    assert not any("the sound at" in x for x in read_mouth_file(path).notes)
