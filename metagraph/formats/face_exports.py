@@ -28,6 +28,7 @@ from metagraph.motion.clip import Clip
 Array = NDArray[Any]
 
 AZURE_RATE = 60.0  # frames a second of Azure's events
+SPARSE = 20  # frames for each that a file has, in all
 MOST = 10.0  # the largest weight that could be
 _REMEDY = phrase(
     "Export the weights of ARKit's 52 blend shapes: from Audio2Face as JSON or CSV, from Azure with its "
@@ -137,6 +138,8 @@ def _in_order(path: Path, chunks: list[tuple[int | None, Array]], notes: list[st
         after = max(after, start + len(rows))
     if after > FRAMES:
         raise FileError(path, phrase("it has no frames, or too many"), "", _REMEDY)
+    if after > SPARSE * sum(len(rows) for _, rows in placed) + 600:
+        raise FileError(path, phrase("its times lie too far apart"), "", _REMEDY)
     out, known = np.zeros((after, len(ARKIT))), np.zeros(after, bool)
     for start, rows in placed:
         out[start : start + len(rows)], known[start : start + len(rows)] = rows, True
@@ -198,7 +201,7 @@ def _from_table(path: Path, text: str, notes: list[str]) -> tuple[list[str], Arr
         raise FileError(path, phrase("its times do not ascend"), "", _REMEDY)
     rate = guess_frame_rate([times]) if len(times) > 1 else 30.0
     count = round((times[-1] - times[0]) * rate) + 1
-    if not 0 <= count <= min(FRAMES, 20 * len(times) + 600):
+    if not 0 <= count <= min(FRAMES, SPARSE * len(times) + 600):
         raise FileError(path, phrase("its times lie too far apart"), "", _REMEDY)
     grid = times[0] + np.arange(count) / rate
     even = [np.interp(grid, times, column) for column in rows.T]

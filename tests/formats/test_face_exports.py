@@ -110,6 +110,12 @@ def test_events_of_azure_lie_where_their_index_says(
     assert not told or any(told in note for note in clip.notes)
 
 
+def test_an_index_far_beyond_the_frames_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.json").write_text(json.dumps(azure() | {"FrameIndex": 100_000}))
+    with pytest.raises(FileError, match="its times lie too far apart"):
+        read_clips(tmp_path / "a.json")
+
+
 def test_what_was_left_out_or_taken_is_told(tmp_path: Path) -> None:
     for data, told in ((audio2face(), "browLowerL"), (azure(), "60 were taken")):
         (tmp_path / "a.json").write_text(json.dumps(data))

@@ -14,6 +14,7 @@ from metagraph.formats.clips import read_clips
 from metagraph.formats.keypoints.reader import read_keypoints
 from metagraph.formats.markers.marker_clips import measure_skeleton, read_marker_clip, read_marker_track
 from metagraph.formats.markers.marker_reading import read_markers
+from metagraph.formats.markers.marker_take import find_metres
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
@@ -124,6 +125,11 @@ def test_a_trc_marker_without_a_name_moves_no_others(tmp_path, clip):
     take = read_markers(path)
     assert take.names == ("unnamed 1", *markers)
     assert take.places[:, 1] == pytest.approx(next(iter(markers.values())), abs=1e-3)
+
+
+@pytest.mark.parametrize(("word", "metres"), [("inches", 0.0254), ("Inch", 0.0254), ("feet", 0.3048)])
+def test_units_are_known_by_their_whole_words(tmp_path, word, metres):
+    assert find_metres(tmp_path, word) == metres
 
 
 def test_decimal_commas_of_a_trc_file_are_points(tmp_path, clip):
