@@ -19,6 +19,7 @@ from metagraph.playback.learning.annotation import (
     Annotation,
     Label,
     find_annotated_again,
+    find_other_people,
     guess_roles,
     list_labels,
     read_other_annotator,
@@ -190,6 +191,16 @@ def describe_doubts(reading: AnnotationReading) -> list[str]:
                 "measure their agreement with 'metagraph study agreement'.",
                 read=first or tr("the first"),
                 tiers=list_in_words([one.tier for one in reading.again]),
+            )
+        )
+    who, unread = find_other_people(reading.annotation, reading.roles)
+    if unread:
+        out.append(
+            tr(
+                "Several people: {read} is read. Not read: {tiers}. Give their tiers roles to read them "
+                "instead.",
+                read=who,
+                tiers=list_in_words(unread),
             )
         )
     if not reading.observed:

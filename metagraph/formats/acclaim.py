@@ -49,6 +49,7 @@ class _Bone:
 class _Figure:
     scale: float = 1.0 / 0.45
     degrees: bool = True
+    degrees_in_motion: bool | None = None  # where the AMC says it, which counts there
     bones: dict[str, _Bone] = field(default_factory=dict)  # without the root, parents first
 
 
@@ -65,7 +66,8 @@ def read_amc(path: str | Path) -> Clip:
     frames = list(_frames(path, figure, order))
     if not frames:
         raise FileError(path, phrase("it has no frames"), "", _AGAIN)
-    unit = math.pi / 180 if figure.degrees else 1.0
+    said = figure.degrees_in_motion
+    unit = math.pi / 180 if (figure.degrees if said is None else said) else 1.0
     metres = figure.scale * _INCH
     rotations = rotation.make_identity_rotations((len(frames), len(names)))
     places = np.zeros((len(frames), 3))
@@ -193,7 +195,8 @@ def _bone_line(path: Path, figure: _Figure, bone: _Bone, cells: list[str], n: in
     elif key == "axis" and len(cells) > 4:
         angles, order = _numbers(path, cells[1:4], n), cells[4].lower()
         for angle, axis in zip(angles, order, strict=False):
-            about = rotation.from_axis_angle(np.array(_AXES.get(axis, (0.0, 0.0, 1.0))), math.radians(angle))
+            turned = math.radians(angle) if figure.degrees else angle
+            about = rotation.from_axis_angle(np.array(_AXES.get(axis, (0.0, 0.0, 1.0))), turned)
             bone.axis = rotation.multiply(about, bone.axis)
     elif key == "dof":
         bone.dof = tuple(c.lower() for c in cells[1:])
@@ -205,6 +208,9 @@ def _frames(path: Path, figure: _Figure, order: tuple[str, ...]) -> Iterator[dic
     now: dict[str, list[float]] | None = None
     for count, (n, cells) in enumerate(_lines(path)):
         if cells[0].startswith(":"):
+            word = cells[0][1:].upper()
+            if word in ("DEGREES", "RADIANS"):
+                figure.degrees_in_motion = word == "DEGREES"
             continue
         if len(cells) == 1 and cells[0].isdigit():
             if now is not None:

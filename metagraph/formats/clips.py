@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from metagraph.common.budgets import MOTION_FILE, SOUND_FILE
 from metagraph.common.files import guard_reader, make_unforeseen_error, open_file
 from metagraph.common.wording import phrase
-from metagraph.errors import FileError
+from metagraph.errors import FileError, clean_text
 from metagraph.formats.clip_readers import (
     FACE_READERS,
     HEAD,
@@ -25,6 +27,10 @@ from metagraph.formats.clip_readers import (
 from metagraph.formats.stray_poses import is_bind_pose
 from metagraph.formats.takes import NAME, ONE_FRAME, note_repair
 from metagraph.motion.clip import Clip, ClipError, Repair
+from metagraph.motion.roles import find_roles, is_humanoid
+from metagraph.motion.skeleton import Skeleton
+
+FIGURE = 12  # joints below the root of another person, at least
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +81,52 @@ def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
         clips = found.read(path, as_is)
     except ClipError as error:
         raise FileError(path, str(error), phrase("its motion"), phrase("Export it again.")) from error
-    return _without_junk(clips, as_is)
+    return _without_junk(_tell_other_figures(clips), as_is)
+
+
+def _tell_other_figures(clips: list[Clip]) -> list[Clip]:
+    """Return clips with a note on the people in their skeleton whose motion nobody plays: a scene of two has
+    two roots, and joints find their roles on one of them.
+    """
+    told: dict[int, str | None] = {}
+    for clip in clips:
+        if id(clip.skeleton) not in told:
+            told[id(clip.skeleton)] = _other_figures(clip.skeleton)
+    notes = [told[id(clip.skeleton)] for clip in clips]
+    return [
+        replace(clip, notes=(*clip.notes, note)) if note else clip
+        for clip, note in zip(clips, notes, strict=True)
+    ]
+
+
+def _other_figures(skeleton: Skeleton) -> str | None:
+    roots = np.flatnonzero(skeleton.parents < 0).tolist()
+    figures = [(root, skeleton.descendants(root)) for root in roots]
+    figures = [(root, joints) for root, joints in figures if len(joints) >= FIGURE]
+    if len(figures) < 2:
+        return None
+    hips = find_roles(skeleton).get("hips")
+    played = next((root for root, joints in figures if hips == root or hips in joints), None)
+    others = [root for root, joints in figures if root != played and _is_person(skeleton, (root, *joints))]
+    if played is None or not others:
+        return None
+    return phrase(
+        "it has several figures: the one below '{name}' is played, not {others}. Export one to a file",
+        name=clean_text(skeleton.names[played][:40]),
+        others=", ".join(f"'{clean_text(skeleton.names[root][:40])}'" for root in others[:6]),
+    )
+
+
+def _is_person(skeleton: Skeleton, joints: Sequence[int]) -> bool:
+    own = sorted(set(joints))
+    place = {joint: n for n, joint in enumerate(own)}
+    part = Skeleton(
+        tuple(skeleton.names[j] for j in own),
+        np.array([place.get(int(skeleton.parents[j]), -1) for j in own]),
+        skeleton.rest_rotations[own],
+        skeleton.rest_translations[own],
+    )
+    return is_humanoid(find_roles(part))
 
 
 def _without_junk(clips: list[Clip], as_is: Collection[str]) -> list[Clip]:

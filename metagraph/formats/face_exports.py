@@ -28,6 +28,7 @@ from metagraph.motion.clip import Clip
 Array = NDArray[Any]
 
 AZURE_RATE = 60.0  # frames a second of Azure's events
+SPARSE = 20  # frames for each that a file has, in all
 MOST = 10.0  # the largest weight that could be
 _REMEDY = phrase(
     "Export the weights of ARKit's 52 blend shapes: from Audio2Face as JSON or CSV, from Azure with its "
@@ -109,15 +110,46 @@ def _from_json(path: Path, text: str, notes: list[str]) -> tuple[list[str], Arra
             raise FileError(path, phrase("'exportFps' is no number"), "", _REMEDY)
         return names, _matrix(path, data["weightMat"], len(names)), float(rate)
     parts = data if isinstance(data, list) else [data]
-    rows: list[Any] = []
+    chunks: list[tuple[int | None, Array]] = []
     for part in parts:
         some = part.get("BlendShapes") if isinstance(part, dict) else None
         if not isinstance(some, list):
             raise FileError(path, phrase("holds neither 'weightMat' nor 'BlendShapes'"), "", _REMEDY)
-        rows += some
+        first = part.get("FrameIndex")
+        known = isinstance(first, int) and not isinstance(first, bool) and 0 <= first <= FRAMES
+        chunks.append((first if known else None, _matrix(path, some, len(ARKIT) + 3)[:, : len(ARKIT)]))
     notes.append(phrase("it does not say its frames a second: {rate:g} were taken", rate=AZURE_RATE))
     notes.append(phrase("how it rolls the head and the eyes was left out"))
-    return list(ARKIT), _matrix(path, rows, len(ARKIT) + 3)[:, : len(ARKIT)], AZURE_RATE
+    return list(ARKIT), _in_order(path, chunks, notes), AZURE_RATE
+
+
+def _in_order(path: Path, chunks: list[tuple[int | None, Array]], notes: list[str]) -> Array:
+    """Return frames `[F, K]` where the `FrameIndex` of their events puts them, which counts the frames before
+    them; those that no event has are filled in. An index of 0 that comes again begins another utterance,
+    which follows the one before. Raises FileError.
+    """
+    placed: list[tuple[int, Array]] = []
+    begin = after = said = 0
+    for first, rows in chunks:
+        if first == 0 and placed and any(start == begin for start, _ in placed):
+            begin, said = after, said + 1
+        start = after if first is None else begin + first
+        placed.append((start, rows))
+        after = max(after, start + len(rows))
+    if after > FRAMES:
+        raise FileError(path, phrase("it has no frames, or too many"), "", _REMEDY)
+    if after > SPARSE * sum(len(rows) for _, rows in placed) + 600:
+        raise FileError(path, phrase("its times lie too far apart"), "", _REMEDY)
+    out, known = np.zeros((after, len(ARKIT))), np.zeros(after, bool)
+    for start, rows in placed:
+        out[start : start + len(rows)], known[start : start + len(rows)] = rows, True
+    if said:
+        notes.append(phrase("its {count} utterances follow each other without a pause", count=said + 1))
+    if not known.all() and known.any():
+        notes.append(phrase("{count} frames that no event has were filled in", count=int((~known).sum())))
+        at = np.arange(after)
+        out = np.stack([np.interp(at, at[known], column[known]) for column in out.T], 1)
+    return out
 
 
 def _matrix(path: Path, rows: Any, width: int) -> Array:
@@ -169,7 +201,7 @@ def _from_table(path: Path, text: str, notes: list[str]) -> tuple[list[str], Arr
         raise FileError(path, phrase("its times do not ascend"), "", _REMEDY)
     rate = guess_frame_rate([times]) if len(times) > 1 else 30.0
     count = round((times[-1] - times[0]) * rate) + 1
-    if not 0 <= count <= min(FRAMES, 20 * len(times) + 600):
+    if not 0 <= count <= min(FRAMES, SPARSE * len(times) + 600):
         raise FileError(path, phrase("its times lie too far apart"), "", _REMEDY)
     grid = times[0] + np.arange(count) / rate
     even = [np.interp(grid, times, column) for column in rows.T]

@@ -33,6 +33,8 @@ _REMEDY = phrase("Give a file of AMASS, BEAT2 or another whose 'poses' are rotat
 _LARGEST = 1 << 30  # bytes of one array
 _HEIGHT = 1.7  # metres
 USUAL_RATE = 30.0
+FASTEST = 12.0  # metres a second that hips go at most: as sprinters run
+HIGHEST = 20.0  # metres that they go up and down at most
 _BODY = (
     "pelvis", "left_hip", "right_hip", "spine1", "left_knee", "right_knee", "spine2", "left_ankle",
     "right_ankle", "spine3", "left_foot", "right_foot", "neck", "left_collar", "right_collar", "head",
@@ -46,6 +48,7 @@ _MODELS = {22: "SMPL-X's body", 24: "SMPL", 52: "SMPL-H", 55: "SMPL-X"}
 _POSES = ("poses", "pose", "smpl_poses", "fullpose")
 _PLACES = ("trans", "transl", "translation", "smpl_trans")
 _RATES = ("mocap_framerate", "mocap_frame_rate", "fps", "frame_rate", "framerate")
+_SCALING = "smpl_scaling"  # by which AIST++ has enlarged `smpl_trans`
 _PARTS = ("root_orient", "pose_body", "pose_jaw", "pose_eye", "pose_hand")
 
 
@@ -69,6 +72,7 @@ def read_smpl(path: str | Path) -> Clip:
     places = _places(path, arrays, frames, notes)
     turned = _from_vectors(poses)
     places, turned[:, 0] = _upright(places, turned[:, 0], notes)
+    places = _in_metres(places, rate, notes)
     skeleton = make_smpl_figure(joints)
     left = [k for k in ("betas", "dmpls", "expressions") if k in arrays]
     if left:
@@ -82,7 +86,7 @@ def read_smpl(path: str | Path) -> Clip:
 
 def _arrays(path: Path) -> dict[str, Array]:
     """Return the arrays of numbers of a file that are read. Raises FileError."""
-    wanted = {*_POSES, *_PLACES, *_RATES, *_PARTS, "betas", "dmpls", "expressions"}
+    wanted = {*_POSES, *_PLACES, *_RATES, *_PARTS, _SCALING, "betas", "dmpls", "expressions"}
     out: dict[str, Array] = {}
     try:
         with zipfile.ZipFile(path) as archive:
@@ -193,6 +197,10 @@ def _places(path: Path, arrays: Mapping[str, Array], frames: int, notes: list[st
         return np.zeros((frames, 3))
     if said.shape != (frames, 3) or not np.isfinite(said).all() or np.abs(said).max() > 1e5:
         raise FileError(path, phrase("'trans' has not three numbers for each frame"), "", _REMEDY)
+    scaling = arrays.get(_SCALING)
+    if scaling is not None and scaling.size == 1 and "smpl_trans" in arrays and float(scaling.max()) > 0:
+        notes.append(phrase("'trans' was divided by '{name}', as in AIST++", name=_SCALING))
+        said = said / float(scaling.max())
     return said
 
 
@@ -209,12 +217,39 @@ def _upright(places: Array, root: Array, notes: list[str]) -> tuple[Array, Array
     upright most of the time.
     """
     up = np.median(rotation.rotate_vectors(root, np.broadcast_to([0.0, 1.0, 0.0], (len(root), 3))), axis=0)
-    if abs(up[2]) <= abs(up[1]):
+    if abs(up[2]) > abs(up[1]):
+        quarter = -1.0 if up[2] > 0 else 1.0
+        told = (
+            phrase("Z is up in it; it was turned so that Y is")
+            if up[2] > 0
+            else phrase("Z is down in it; it was turned so that Y is up")
+        )
+    elif up[1] < -0.5:  # who stands before a camera, in the camera's axes
+        quarter, told = (
+            2.0,
+            phrase("Y is down in it, as in a camera's picture; it was turned so that Y is up"),
+        )
+    else:
         return places, root
-    notes.append(phrase("Z is up in it; it was turned so that Y is"))
-    turn = np.array([-np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)])  # a quarter turn about X: Z to Y
+    notes.append(told)
+    turn = rotation.from_axis_angle([1.0, 0.0, 0.0], quarter * np.pi / 2)
     turns = np.broadcast_to(turn, root.shape)
     return rotation.rotate_vectors(turns, places), rotation.multiply(turns, root)
+
+
+def _in_metres(places: Array, rate: float, notes: list[str]) -> Array:
+    """Return where the body goes in metres: in centimetres or millimetres where it would otherwise be faster
+    than people run, or go higher than they climb.
+    """
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=-1)
+    speed = float(np.percentile(steps, 95)) * rate if len(steps) else 0.0
+    height = float(np.ptp(np.percentile(places[:, 1], (5, 95))))
+    for scale, unit in ((1.0, ""), (0.01, phrase("centimetres")), (0.001, phrase("millimetres"))):
+        if speed * scale <= FASTEST and height * scale <= HIGHEST:
+            if unit:
+                notes.append(phrase("'trans' was read as {unit}: in metres it goes too far", unit=unit))
+            return places * scale
+    return places
 
 
 def make_smpl_figure(joints: int) -> Skeleton:

@@ -125,6 +125,14 @@ _SIGN = {sign: viseme for viseme, signs in _SIGNS.items() for sign in signs}
 _VOWELS = ("aa", "E", "I", "O", "U")
 _REDUCED = {"ə", "@", "ɘ", "ɐ", "6", "ax", "axh", "ix"}  # vowels that are hardly made
 _TWO = (0.6, 0.4)  # how a diphthong's time is shared
+_NOISE = re.compile(
+    r"<[^<>]*>|\[[^\[\]]{3,}\]"
+)  # WebMAUS' <usb> and <nib>, and what others put into brackets
+_ASIDE = re.compile(r"_[A-Za-z0-9<>=?\\~^}-]")  # X-SAMPA's signs that only change the sound before: t_h
+_TONE = re.compile(r"(\D*[^\W\d_])(?:_T|_)?([0-6])")  # a1, uo_4, aa_T2
+_NAMED_PHONES = r"phon|segment|sampa|ipa|\bmau\b|\bph\b|^phs?$"
+# WebMAUS calls its words ORT-MAU and KAN-MAU.
+_NAMED_WORDS = r"word|\bort|\bkan\b|\btr[nls]\b|transcript|text|utter|phrase"
 
 
 def is_arpabet(labels: Iterable[str]) -> bool:
@@ -136,7 +144,7 @@ def is_arpabet(labels: Iterable[str]) -> bool:
 
 def find_visemes(label: str, arpabet: bool) -> tuple[list[str], float]:
     """Return a phone's mouth shapes in turn, none for silence, and how fully they are made, 0..1."""
-    if label.strip().casefold() in _SILENT:
+    if label.strip().casefold() in _SILENT or _NOISE.fullmatch(label.strip()):
         return [], 0.0
     if arpabet:
         bare = _bare(label)
@@ -149,7 +157,7 @@ def find_visemes(label: str, arpabet: bool) -> tuple[list[str], float]:
             out += _ARPABET[bare[:size]].split() if size else []
             bare = bare[max(1, size) :]
         return out, 1.0
-    signs = [c for c in unicodedata.normalize("NFD", label) if not unicodedata.combining(c)]
+    signs = [c for c in unicodedata.normalize("NFD", _ASIDE.sub("", label)) if not unicodedata.combining(c)]
     out = []
     for sign in signs:
         viseme = _SIGN.get(sign)
@@ -164,17 +172,43 @@ def _bare(label: str) -> str:
     return re.sub(r"[^a-z]", "", label.strip().casefold())
 
 
+def drop_tones(labels: Iterable[str]) -> dict[str, str]:
+    """Return each label without the digit of its tone, as phones of Mandarin, Cantonese and Vietnamese have
+    it: where at least half of the labels with a vowel end in a digit, and not all in the same one. Otherwise
+    digits are SAMPA's vowels, and labels stay as they are.
+    """
+    given = set(labels)
+    found = {label: m for label in given if (m := _TONE.fullmatch(label.strip())) is not None}
+    vowels = [x for x in given if any(_SIGN.get(c) in _VOWELS for c in x)]
+    toned = len({m[2] for m in found.values()}) > 1 and 2 * len(found) >= len(vowels)
+    return {label: found[label][1] if toned and label in found else label for label in given}
+
+
 def list_mouth_pieces(grid: TextGrid) -> list[MouthPiece]:
     """Return what the mouth goes through in a TextGrid, by its phones or, where it has none, its words."""
-    tiers = [
+    tiers = list_phone_tiers(grid)
+    if tiers:
+        phones = tiers[0]
+        arpabet = is_arpabet(i.text for i in phones.intervals)
+        bare = drop_tones(i.text for i in phones.intervals)
+        return [p for i in _in_turn(phones) for p in _spread(i, *find_visemes(bare[i.text], arpabet))]
+    words = _pick(_speaking(grid), _NAMED_WORDS, short=False)
+    return [p for i in _in_turn(words[0]) for p in _spell(i)] if words else []
+
+
+def list_phone_tiers(grid: TextGrid) -> list[GridTier]:
+    """Return the tiers that hold phones: those whose names say so, one for each speaker; else the one whose
+    labels are short.
+    """
+    tiers = _speaking(grid)
+    plain = [t for t in tiers if not re.search(_NAMED_WORDS, t.name.casefold())]
+    return _pick(plain, _NAMED_PHONES, short=True) or _pick(tiers, _NAMED_PHONES, short=True)
+
+
+def _speaking(grid: TextGrid) -> list[GridTier]:
+    return [
         t for t in grid.tiers if not t.points and any(i.text.casefold() not in _SILENT for i in t.intervals)
     ]
-    phones = _pick(tiers, r"phon|segment|sampa|ipa|\bmau\b|\bph\b|^phs?$", short=True)
-    if phones is not None:
-        arpabet = is_arpabet(i.text for i in phones.intervals)
-        return [p for i in _in_turn(phones) for p in _spread(i, *find_visemes(i.text, arpabet))]
-    words = _pick(tiers, r"word|ort|transcript|text|utter|phrase", short=False)
-    return [p for i in _in_turn(words) for p in _spell(i)] if words is not None else []
 
 
 def _in_turn(tier: GridTier) -> list[GridInterval]:
@@ -186,17 +220,18 @@ def _in_turn(tier: GridTier) -> list[GridInterval]:
     return [replace(i, end=end) if end < i.end else i for i, end in zip(ordered, [*ends, inf], strict=False)]
 
 
-def _pick(tiers: Sequence[GridTier], pattern: str, short: bool) -> GridTier | None:
+def _pick(tiers: Sequence[GridTier], pattern: str, short: bool) -> list[GridTier]:
+    """Return the tiers whose names fit a pattern, else the longest whose labels are short, or are not."""
     named = [t for t in tiers if re.search(pattern, t.name.casefold())]
     if named:
-        return named[0]
+        return named
 
     def length(tier: GridTier) -> float:
         sizes = sorted(len(i.text) for i in tier.intervals if i.text.casefold() not in _SILENT)
         return sizes[len(sizes) // 2]
 
     fitting = [t for t in tiers if (length(t) <= 2.5) == short]
-    return max(fitting, key=lambda t: len(t.intervals), default=None)
+    return sorted(fitting, key=lambda t: -len(t.intervals))[:1]
 
 
 def _spread(interval: GridInterval, found: list[str], strength: float) -> list[MouthPiece]:

@@ -69,6 +69,17 @@ def test_bones_lie_end_to_end_in_metres_and_turn_about_their_axes(tmp_path: Path
     assert any("120 were taken" in n for n in clip.notes) and any("01.asf" in n for n in clip.notes)
 
 
+@pytest.mark.parametrize("said", [":RADIANS", ""])
+def test_radians_turn_bones_and_their_axes_as_degrees_do(tmp_path: Path, said: str) -> None:
+    skeleton = asf().replace("angle deg", "angle rad").replace("0 0 90", f"0 0 {np.pi / 2}")
+    motion = amc((("lhumerus", str(np.pi / 2)),)).replace(":DEGREES", said)
+    clip = read(tmp_path, motion, skeleton)
+    mixed = read(tmp_path, amc(), skeleton)  # its motion says degrees
+    want = read(tmp_path, amc())
+    for found in (clip, mixed):
+        assert np.abs(found.rotations - want.rotations).max() < 1e-6
+
+
 def test_the_first_turn_is_the_innermost(tmp_path: Path) -> None:
     clip = read(tmp_path, amc((("lowerback", "90 0 90"), ("lhumerus", "0"))))
     _, at = clip.skeleton.globals(clip.poses())

@@ -15,6 +15,7 @@ from metagraph.formats.clips import digest, find_clip_files, import_clips, read_
 from metagraph.formats.gltf.reader import write_glb
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Skeleton
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 from tests import zoo
 
@@ -32,6 +33,24 @@ def test_every_format_reads_through_one_door(tmp_path: Path) -> None:
     write_bvh(clip(), tmp_path / "b.bvh")
     assert [c.name for c in read_clips(tmp_path / "a.GLB")] == ["one", "two"]
     assert [c.name for c in read_clips(tmp_path / "b.bvh")] == ["b"]
+
+
+def test_a_second_person_in_a_file_is_told(tmp_path: Path) -> None:
+    count = len(SKELETON)
+    both = Skeleton(
+        (*SKELETON.names, *(f"B_{name}" for name in SKELETON.names)),
+        np.concatenate([SKELETON.parents, np.where(SKELETON.parents < 0, -1, SKELETON.parents + count)]),
+        np.tile(SKELETON.rest_rotations, (2, 1)),
+        np.concatenate([SKELETON.rest_translations, SKELETON.rest_translations]),
+    )
+    one = clip()
+    rotations = np.tile(one.rotations, (1, 2, 1))
+    write_bvh(Clip("wave", both, 30, rotations, one.translations), tmp_path / "two.bvh")
+    write_bvh(one, tmp_path / "one.bvh")
+    told = [n for n in read_clips(tmp_path / "two.bvh")[0].notes if "several figures" in n]
+    root = SKELETON.names[0]
+    assert len(told) == 1 and f"below '{root}' is played, not 'B_{root}'" in told[0]
+    assert not any("several figures" in n for n in read_clips(tmp_path / "one.bvh")[0].notes)
 
 
 def test_nameless_bind_poses_of_one_frame_are_skipped_with_a_note_and_others_kept_last(

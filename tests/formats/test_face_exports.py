@@ -86,6 +86,36 @@ def test_curves_of_a_face_are_read_at_their_rate(tmp_path: Path, name: str, text
     assert find_clip_files(tmp_path) == [tmp_path / name]
 
 
+@pytest.mark.parametrize(
+    ("starts", "want", "told"),
+    [
+        ([4, 0, 8], list(range(12)), ""),
+        ([0, 8], [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11], "4 frames that no event has were filled in"),
+        ([0, 4, 0], [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3], "its 2 utterances follow each other"),
+    ],
+    ids=["out of order", "one lost", "two utterances"],
+)
+def test_events_of_azure_lie_where_their_index_says(
+    tmp_path: Path, starts: list[int], want: list[int], told: str
+) -> None:
+    def event(first: int) -> dict[str, object]:
+        rows = [[0.0] * 55 for _ in range(4)]
+        for n, row in enumerate(rows):
+            row[ARKIT.index("jawOpen")] = (first + n) / 20
+        return {"FrameIndex": first, "BlendShapes": rows}
+
+    (tmp_path / "a.json").write_text(json.dumps([event(first) for first in starts]))
+    (clip,) = read_clips(tmp_path / "a.json")
+    assert curve(clip, "jawOpen") * 20 == pytest.approx(want, abs=1e-5)
+    assert not told or any(told in note for note in clip.notes)
+
+
+def test_an_index_far_beyond_the_frames_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.json").write_text(json.dumps(azure() | {"FrameIndex": 100_000}))
+    with pytest.raises(FileError, match="its times lie too far apart"):
+        read_clips(tmp_path / "a.json")
+
+
 def test_what_was_left_out_or_taken_is_told(tmp_path: Path) -> None:
     for data, told in ((audio2face(), "browLowerL"), (azure(), "60 were taken")):
         (tmp_path / "a.json").write_text(json.dumps(data))

@@ -100,6 +100,52 @@ def test_parts_of_a_pose_are_joined_in_the_published_order(tmp_path: Path) -> No
     assert np.array_equal(one.rotations, other.rotations)
 
 
+@pytest.mark.parametrize(
+    ("turn", "way", "told"),
+    [(np.pi, [1, -1, -1], "Y is down in it"), (-np.pi / 2, None, "Z is down in it"), (0.3, None, "")],
+    ids=["a camera's axes", "Z down", "leaning"],
+)
+def test_a_body_that_is_upside_down_is_turned_upright(
+    tmp_path: Path, turn: float, way: list[int] | None, told: str
+) -> None:
+    poses, trans = body(24)
+    poses[:, 0, 0] = turn
+    trans = trans * (way or [1, 1, 1])
+    (clip,) = read_clips(write(tmp_path / "a.npz", poses=poses.reshape(20, -1), trans=trans, fps=30))
+    at = places(clip)
+    assert (at["head"][:, 1] > at["pelvis"][:, 1] + 0.4).all()
+    assert at["left_wrist"][0, 0] > 0.7 > 0 > at["right_wrist"][0, 0]
+    assert any(" is down in it" in note for note in clip.notes) == bool(told)
+    assert not told or any(note.startswith(told) for note in clip.notes)
+    if way:
+        assert at["pelvis"][-1] - at["pelvis"][0] == pytest.approx([0, 0, 1], abs=1e-6)
+
+
+@pytest.mark.parametrize(("unit", "name"), [(1.0, ""), (100.0, "centimetres"), (1000.0, "millimetres")])
+def test_a_body_that_would_be_too_fast_goes_in_smaller_units(tmp_path: Path, unit: float, name: str) -> None:
+    poses, trans = body(52)
+    (clip,) = read_clips(
+        write(tmp_path / "a.npz", poses=poses.reshape(20, -1), trans=trans * unit, mocap_framerate=30)
+    )
+    assert places(clip)["pelvis"][-1] - places(clip)["pelvis"][0] == pytest.approx([0, 0, 1], abs=1e-6)
+    assert any("was read as" in note for note in clip.notes) == bool(name)
+    assert not name or f"'trans' was read as {name}: in metres it goes too far" in clip.notes
+
+
+def test_the_scaling_of_aist_is_undone(tmp_path: Path) -> None:
+    poses, trans = body(24)
+    path = write(
+        tmp_path / "a.npz",
+        smpl_poses=poses.reshape(20, -1),
+        smpl_trans=trans * 93.8,
+        smpl_scaling=np.array([93.8]),
+        fps=60,
+    )
+    (clip,) = read_clips(path)
+    assert places(clip)["pelvis"][-1] - places(clip)["pelvis"][0] == pytest.approx([0, 0, 1], abs=1e-6)
+    assert any("smpl_scaling" in note for note in clip.notes)
+
+
 def test_what_is_not_said_is_told(tmp_path: Path) -> None:
     poses, _ = body(24)
     (clip,) = read_clips(write(tmp_path / "a.npz", poses=poses))

@@ -69,6 +69,24 @@ def test_phones_are_found_by_name_and_go_before_words() -> None:
     ]
 
 
+def test_the_words_of_webmaus_are_not_read_as_phones() -> None:
+    spoken = tier("MAU", "<p:>", "h", "aU", "s", "<usb>", "<nib>")
+    names = tier("ORT-MAU", "", "Haus", "Haus", "Haus"), tier("KAN-MAU", "", "haUs", "haUs", "haUs")
+    assert shapes(*names, spoken) == ["kk", "aa", "U", "SS"]
+    assert shapes(*names) == shapes(names[0])
+
+
+def test_digits_of_tones_are_no_vowels() -> None:
+    assert shapes(tier("phones", "m", "a1", "m", "a5", "uo_2", "aa_T3")) == [
+        "PP", "aa", "PP", "aa", "U", "O", "aa",
+    ]  # fmt: skip
+    assert shapes(tier("phones", "h", "i:6", "6", "E6")) == ["kk", "I", "aa", "aa", "E", "aa"]
+
+
+def test_a_breath_after_a_sound_is_no_sound_of_its_own() -> None:
+    assert find_visemes("t_h", False)[0] == ["DD"]
+
+
 def test_words_alone_are_spelled() -> None:
     assert shapes(tier("Mary", "map", "", "five")) == ["PP", "aa", "PP", "FF", "I", "FF"]
 

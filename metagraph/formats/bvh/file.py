@@ -37,6 +37,7 @@ from metagraph.motion.skeleton import Skeleton, make_names_unique
 Array = NDArray[Any]
 
 _LONGEST_HEADER = 16 * MIB
+_USUAL_RATES = (24, 25, 30, 48, 50, 60, 72, 90, 100, 120, 144, 200, 240)
 _SLOWEST = 4.0  # seconds, from which on a frame time is taken for milliseconds
 _NUMBERS = re.compile(rb"(?im)^[ \t]*(?:OFFSET|Frame Time:|[-+\d])[^\r\n]*")  # lines that have numbers
 _COMMA = re.compile(rb"(?<=\d),(?=\d)")
@@ -323,7 +324,7 @@ def _motion(
         notes.append("its last row was cut off and was dropped")
     if rows != promised:
         notes.append(f"'Frames:' says {promised}, the file has {rows}")
-    return numbers[: rows * channels].reshape(rows, channels), _fps(digits, step), repairs
+    return numbers[: rows * channels].reshape(rows, channels), _fps(digits, step, notes), repairs
 
 
 def _line(data: bytes, at: int) -> int:
@@ -340,18 +341,23 @@ def _uneven_row(data: bytes, start: int, channels: int) -> int:
     return 0
 
 
-def _fps(text: str, step: float) -> float:
+def _fps(text: str, step: float, notes: list[str]) -> float:
     """Return the frames per second, rounded to an integer if the frame time equals it within its last written
-    digit.
+    digit: to a usual rate where one does, since 0.017 s are 60 rather than 59.
     """
     digits = re.fullmatch(r"\d*\.?(\d*)", text)
     whole = float(round(1 / step))
-    if (
-        digits
-        and whole
-        and abs(1 / whole - step) <= 1.001 * 10.0 ** -len(digits[1])
-        and abs(whole * step - 1) < 0.02
-    ):
+    if digits is None or not whole:
+        return 1 / step
+    most = 1.001 * 10.0 ** -len(digits[1])
+    usual = min(_USUAL_RATES, key=lambda rate: abs(1 / rate - step))
+    if abs(whole * step - 1) > 1e-9 and abs(1 / usual - step) <= most and abs(usual * step - 1) < 0.15:
+        if abs(usual * step - 1) > 0.025:
+            notes.append(
+                phrase("its frame time of {step} s was taken for {fps} frames a second", step=text, fps=usual)
+            )
+        return float(usual)
+    if abs(1 / whole - step) <= most and abs(whole * step - 1) < 0.02:
         return whole
     return 1 / step
 

@@ -111,7 +111,7 @@ def _planned(
     )
     frames = max(1, round((end - start) * fps) + 1)
     gltf.spend(frames * len(rig.nodes) * 32, where)
-    if start * fps > 0.5:
+    if abs(start) * fps > 0.5:
         notes.append(f"it starts at {start:.3f} s in the file; that moment is now 0")
     grid = FrameGrid(np.minimum(start + np.arange(frames) / fps, end), fps)
     return _Plan(number, animation.name, where, first, after, morphs, notes, grid)

@@ -95,8 +95,12 @@ def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | No
     if not frames:
         raise FileError(path, "there are no frames in it", "", REMEDY)
     notes: list[str] = []
-    if head.h36m:
+    if not head.h36m and _looks_h36m(frames):
+        head.h36m = True
+        notes.append("its points were taken for Human3.6M's: the first lies between the second and the fifth")
+    elif head.h36m:
         notes.append("its points are Human3.6M's, as it says")
+    if head.h36m:
         for frame in frames:
             frame.flat, frame.space = ([_from_h36m(p) for p in some] for some in (frame.flat, frame.space))
     return make_keypoint_track(path, frames, fps or head.fps, picture or _size(head), notes)
@@ -112,6 +116,21 @@ def _joined(found: Iterable[KeypointFrame]) -> list[KeypointFrame]:
         else:
             out.append(frame)
     return out
+
+
+def _looks_h36m(frames: Sequence[KeypointFrame]) -> bool:
+    """Return whether 17 points are Human3.6M's and not COCO's: the first lies in the middle of the second and
+    the fifth, the hips, which are closer to each other than a thigh or a shank is long.
+    """
+    people = [p for f in frames for some in (f.flat, f.space) for p in some if len(p.points) == len(H36M)]
+    seen = [p.points for p in people if (p.confidence[:5] > 0).all()]
+    if not seen:
+        return False
+    at = np.array(seen)
+    wide = np.linalg.norm(at[:, 1] - at[:, 4], axis=-1)
+    off = np.linalg.norm(at[:, 0] - (at[:, 1] + at[:, 4]) / 2, axis=-1)
+    legs = np.linalg.norm(np.diff(at[:, 1:4], axis=1), axis=-1).min(1)
+    return bool(np.median(off - 0.08 * wide) < 0 and np.median(legs - 1.2 * wide) > 0)
 
 
 def _from_h36m(person: SeenPerson) -> SeenPerson:

@@ -12,7 +12,14 @@ from metagraph.common.budgets import KEYPOINT_FRAMES, KEYPOINTS_FILE
 from metagraph.common.files import guard_reader, read_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
-from metagraph.formats.markers.marker_take import AGAIN, MOST_MARKERS, MarkerTake, check_rate, find_metres
+from metagraph.formats.markers.marker_take import (
+    AGAIN,
+    MOST_MARKERS,
+    MarkerTake,
+    check_rate,
+    find_metres,
+    hide_zeros,
+)
 
 
 @guard_reader
@@ -47,6 +54,7 @@ def read_c3d(path: str | Path) -> MarkerTake:
     table = np.array(found, float).reshape(len(found), count, 4)
     places = table[..., :3] * metres
     places[table[..., 3] < 0] = np.nan  # a residual below 0: the marker was not seen
+    hide_zeros(places)
     places[~(np.abs(places) < 1e6).all(-1)] = np.nan
     names += [f"unnamed {n}" for n in range(len(names), count)]
     notes = (

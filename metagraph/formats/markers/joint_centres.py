@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.wording import phrase
-from metagraph.errors import FileError
+from metagraph.errors import FileError, clean_text
 from metagraph.formats.markers.marker_take import MarkerTake
 from metagraph.mimicry.keypoint_layouts import PLACE, POINTS, KeypointTrack
 
@@ -46,6 +46,8 @@ NOSES = ("NOSE", "LFHD RFHD", "HEADFRONT", "FRONTHEAD")
 FRONTS = ("SASI", "SASIS", "SIAS", "WAISTSFRONT")  # the front iliac spines
 BACKS = ("LPSI RPSI", "LPSIS RPSIS", "LIPS RIPS", "SACR", "SACRUM", "VSACRAL", "WAISTLBACK WAISTRBACK",
          "SACRAL", "WAISTBACK")  # fmt: skip
+TRUNK = (0.1, 1.5)  # metres from hips to shoulders: outside of it the unit is another
+USUAL = (0.2, 0.9)  # metres that a trunk is long
 NEEDED = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 _SETS = "Plug-in Gait, ISB, OpenSim, OpenCap, OptiTrack or Qualisys Animation, or joints: LShoulder"
 
@@ -54,7 +56,7 @@ def find_joint_centres(path: Path, take: MarkerTake) -> KeypointTrack:
     """Return the body's points that markers show, metres, in the axes of keypoints: the body stands along y
     and looks along z at first. Raises FileError where the names are those of no set that is known.
     """
-    markers = _by_name(take)
+    markers, told = _by_name(take)
     points = np.full((len(take.places), len(POINTS), 3), np.nan)
     skin = []
     for part, sets in CENTRES.items():
@@ -83,11 +85,12 @@ def find_joint_centres(path: Path, take: MarkerTake) -> KeypointTrack:
             "",
             phrase("Name them as in {sets}.", sets=_SETS),
         )
-    notes = list(take.notes)
+    notes = [*take.notes, *told]
     if skin:
         notes.append(
             phrase("of the {parts} only one marker is known, which is on the skin", parts=", ".join(skin))
         )
+    points = _in_metres(points, notes)
     turned = _upright(np.where(seen[..., None], points, 0.0), seen)
     times = np.arange(len(points)) / take.rate
     return KeypointTrack(times, turned, seen.astype(float), POINTS, 3, tuple(notes))
@@ -112,16 +115,31 @@ _ONE_SIDED = frozenset(
 )
 
 
-def _by_name(take: MarkerTake) -> dict[str, Array]:
-    """Return markers `[F, 3]` by their plain names: without the subject's, signs, and what says of which
-    study they are; the first of those with one name.
+def _by_name(take: MarkerTake) -> tuple[dict[str, Array], list[str]]:
+    """Return markers `[F, 3]` of one subject by their plain names, and notes: without the subject's name,
+    signs, and what says of which study they are; the first of those with one name. Of several subjects it is
+    the one with most markers of a body, of equals the first.
     """
-    out: dict[str, Array] = {}
+    subjects: dict[str, dict[str, Array]] = {}
     for n, name in enumerate(take.names):
-        word = re.sub(r"[^a-z0-9]", "", re.sub(r"^.*:|_study$", "", name.strip(), flags=re.I).lower())
+        subject, _, own = name.strip().rpartition(":")
+        word = re.sub(r"[^a-z0-9]", "", re.sub(r"_study$", "", own, flags=re.I).lower())
         word = re.sub(r"^left", "l", re.sub(r"^right", "r", word))
-        out.setdefault(word.upper(), take.places[:, n])
-    return out
+        subjects.setdefault(subject.strip(), {}).setdefault(word.upper(), take.places[:, n])
+    bodies = {who: len(_KNOWN & set(markers)) for who, markers in subjects.items()}
+    whose = max(bodies, key=lambda who: bodies[who])
+    others = [who for who, count in bodies.items() if who and who != whose and count > 0]
+    # Markers without a subject belong to the one that is read.
+    out = {**(subjects.get("") or {}), **subjects[whose]}
+    if not others:
+        return out, []
+    return out, [
+        phrase(
+            "it has several subjects: {whose} is read, not {others}",
+            whose=clean_text(whose[:40]) or phrase("the one without a name"),
+            others=", ".join(clean_text(who[:40]) for who in others[:6]),
+        )
+    ]
 
 
 def _of_side(words: str, side: str) -> str:
@@ -132,6 +150,15 @@ def _of_side(words: str, side: str) -> str:
         else letter + w[1:]
         for w in words.split()
     )  # fmt: skip
+
+
+_KNOWN = frozenset(
+    name
+    for sets in (*CENTRES.values(), FRONTS, BACKS, NOSES)
+    for words in sets
+    for side in ("left", "right")
+    for name in _of_side(words, side).split()
+)
 
 
 def _middle(markers: Mapping[str, Array], sets: Sequence[str]) -> tuple[Array | None, str]:
@@ -158,6 +185,27 @@ def _hip(markers: Mapping[str, Array], side: str) -> Array | None:
     y = np.cross(z, x)
     own, way = (left, -1.0) if side == "left" else (right, 1.0)
     return np.asarray(own + wide * (way * MEDIAL * x - DOWN * y - BACK * z))
+
+
+def _in_metres(points: Array, notes: list[str]) -> Array:
+    """Return points with a trunk as long as a person's: files say millimetres of metres, and the reverse."""
+    ends = [points[:, [PLACE[f"left_{p}"], PLACE[f"right_{p}"]]].mean(1) for p in ("shoulder", "hip")]
+    far = np.linalg.norm(ends[0] - ends[1], axis=-1)
+    trunk = float(np.median(far[np.isfinite(far)])) if np.isfinite(far).any() else 0.0
+    if trunk <= 0 or TRUNK[0] <= trunk <= TRUNK[1]:
+        return points
+    scale = next((x for x in (1000.0, 0.001, 100.0, 0.01) if USUAL[0] <= trunk * x <= USUAL[1]), None)
+    if scale is None:
+        return points
+    notes.append(
+        phrase(
+            "in the unit it says the trunk is {trunk:.3g} m long: read {factor:g} times {way}",
+            trunk=trunk,
+            factor=max(scale, 1 / scale),
+            way=phrase("larger") if scale > 1 else phrase("smaller"),
+        )
+    )
+    return points * scale
 
 
 def _upright(points: Array, seen: Array) -> Array:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.wording import phrase
@@ -14,6 +15,10 @@ from metagraph.errors import FileError
 Array = NDArray[Any]
 
 METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+_WORDS = {
+    "meters": "m", "metres": "m", "meter": "m", "millimeters": "mm", "millimetres": "mm", "centimeters": "cm",
+    "centimetres": "cm", "inch": "in", "inches": "in", "feet": "ft",
+}  # fmt: skip
 MOST_MARKERS = 1000
 AGAIN = phrase("Export it again from the program it is from.")
 
@@ -40,9 +45,7 @@ def check_rate(path: Path, rate: float) -> float:
 def find_metres(path: Path, unit: str) -> float:
     """Return how long a file's unit is, in metres. Raises FileError for one that is not known."""
     word = unit.strip().lower().rstrip(".")
-    word = {"meters": "m", "metres": "m", "meter": "m", "millimeters": "mm", "centimeters": "cm"}.get(
-        word, word
-    )
+    word = _WORDS.get(word, word)
     if word not in METRES:
         raise FileError(
             path,
@@ -51,3 +54,10 @@ def find_metres(path: Path, unit: str) -> float:
             phrase("Export it in millimetres or metres."),
         )
     return METRES[word]
+
+
+def hide_zeros(places: Array) -> None:
+    """Say of markers `[F, M, 3]` that lie exactly in the origin that they were not seen, in place: many
+    programs write zeros for them.
+    """
+    places[(places == 0.0).all(-1)] = np.nan

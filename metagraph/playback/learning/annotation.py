@@ -304,6 +304,23 @@ def find_annotated_again(annotation: Annotation, roles: Mapping[str, str]) -> li
     ]
 
 
+def find_other_people(annotation: Annotation, roles: Mapping[str, str]) -> tuple[str, list[str]]:
+    """Return the person whose tiers are read, "" if the file does not say, and the tiers of others that tell
+    what these did and are not read.
+    """
+    names = split_tier_names(annotation)
+    read = {t.whose for t in annotation.tiers if roles[t.name] in ROLES}
+    if len(read) != 1 or "" in read:
+        return "", []
+    unread = [
+        t.name
+        for t in annotation.tiers
+        if t.whose and t.whose not in read and t.intervals and roles[t.name] == IGNORE
+        and guess_role(t, names[t.name].stem) in ROLES
+    ]  # fmt: skip
+    return next(iter(read)), unread
+
+
 def read_other_annotator(annotation: Annotation, roles: Mapping[str, str], annotator: str) -> dict[str, str]:
     """Return the roles with one annotator's tiers read instead of those of others for the same. Raises
     ValueError if nobody of that name annotated anything that is read otherwise.

@@ -18,6 +18,7 @@ _RATES = (24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 100.0, 120.0)
 _TIMES = ("time", "t", "start", "startTime", "start_time", "begin", "timestamp", "at")
 _OFFSETS = ("audioOffset", "AudioOffset", "audio_offset", "offset", "Offset")
 _ENDS = ("end", "endTime", "end_time", "stop")
+_LENGTHS = ("duration", "dur", "length", "vduration")
 _NAMES = (
     "viseme",
     "Viseme",
@@ -31,6 +32,7 @@ _NAMES = (
     "name",
 )
 _SPLIT = re.compile(r"[\t,; ]+")
+_COMMA = re.compile(r"(?<=\d),(?=\d)")
 
 
 # --- Rhubarb
@@ -213,6 +215,10 @@ def read_cue_list(file: MouthFile) -> MouthShapes:
             next((row[k] for k in keys if row.get(k) is not None), None)
             for keys in ((*_TIMES, *_OFFSETS), _ENDS, _NAMES)
         )
+        at = parse_mouth_number(start)
+        lasts = next((parse_mouth_number(row[k]) for k in _LENGTHS if row.get(k) is not None), None)
+        if end is None and at is not None and lasts is not None:
+            end = at + lasts
         cues.add(start, end, label, where)
     if marks:
         cues.choose_unit((MILLISECONDS,), MILLISECONDS[0])
@@ -262,9 +268,27 @@ def read_gentle(file: MouthFile) -> MouthShapes:
 
 def is_cue_table(file: MouthFile) -> bool:
     """Return whether most lines hold a time, perhaps an end, and one word."""
-    lines = [x for x in file.text.split("\n")[:200] if x.strip()]
-    found = sum(_cells(x) is not None for x in lines)
-    return len(lines) > 1 and found >= len(lines) - 1
+    rows, *_ = _rows_of(file)
+    found = sum(_cells(x) is not None for _, x in rows[:200])
+    return len(rows) > 1 and found >= len(rows[:200]) - 1
+
+
+def _rows_of(file: MouthFile) -> tuple[list[tuple[int, str]], bool, bool]:
+    """Return the lines that are not empty with their numbers, whether decimal commas became points in them,
+    and whether they are an xwaves label file (Festival, ESPS): below a line with # each has when its label
+    ends, a colour, and the label.
+    """
+    rows = [(n, x) for n, x in enumerate(file.text.lstrip("\ufeff").split("\n"), 1) if x.strip()]
+    head = next((k for k, (_, x) in enumerate(rows[:20]) if x.strip() == "#"), None)
+    if head is not None:
+        rows = rows[head + 1 :]
+    commas = not any("." in x for _, x in rows) and any(
+        _COMMA.search(x) and re.search(r"[\t;]", x) for _, x in rows
+    )
+    if commas:
+        rows = [(n, _COMMA.sub(".", x)) for n, x in rows]
+    colours = {x.split()[1] for _, x in rows if len(x.split()) > 1}
+    return rows, commas, head is not None and len(colours) == 1 and next(iter(colours)).isdigit()
 
 
 def _cells(line: str) -> tuple[str, str | None, str] | None:
@@ -277,18 +301,28 @@ def _cells(line: str) -> tuple[str, str | None, str] | None:
 
 
 def read_cue_table(file: MouthFile) -> MouthShapes:
-    """Read lines of a start, perhaps an end, and a shape or phone, as Rhubarb writes TSV; a head is passed
-    over. Raises FileError.
+    """Read lines of a start, perhaps an end or how long it lasts, and a shape or phone, as Rhubarb writes
+    TSV; a head is passed over but for the word duration. Of xwaves labels the first number is the end. Raises
+    FileError.
     """
     cues = MouthCues(file)
-    for n, line in enumerate(file.text.lstrip("\ufeff").split("\n"), 1):
-        if not line.strip():
-            continue
+    rows, commas, xwaves = _rows_of(file)
+    if commas:
+        cues.notes.append(phrase("its decimal commas were read as points"))
+    lasts, before = False, "0"
+    for n, line in rows:
         cells = _cells(line)
         if cells is None:
             if cues.rows:
                 raise file.fail(phrase("has no time and no name of a shape"), phrase("line {n}", n=n))
+            head = [c.strip('"').casefold() for c in _SPLIT.split(line.strip())]
+            lasts |= len(head) == 3 and head[1] in _LENGTHS
             continue
-        cues.add(*cells, phrase("line {n}", n=n))
+        start, end, label = cells
+        if xwaves:
+            start, end, before = before, start, start
+        elif lasts and end is not None:
+            end = str(float(start) + float(end))
+        cues.add(start, end, label, phrase("line {n}", n=n))
     cues.choose_unit((SECONDS, MILLISECONDS, TICKS), SECONDS[0])
     return cues.finished()

@@ -73,6 +73,9 @@ def read_viseme_table(file: MouthFile) -> MouthShapes:
             if at is None:
                 raise file.fail(phrase("has no time"), where)
             times.append(at)
+    counted = _bare(head) and len(times) > 1 and times[0] in (0, 1) and bool((np.diff(times) == 1).all())
+    if counted:  # numbers of frames, which say nothing of when they are
+        times, time = [], None
     return _shapes(file, rows, times, head[time].casefold() if time is not None else "")
 
 

@@ -18,7 +18,7 @@ from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.playback.life.line_timing import AZURE, OCULUS, POLLY, WEAK
 from metagraph.playback.life.mouth import MouthPiece
-from metagraph.speech.phones import find_visemes, is_arpabet
+from metagraph.speech.phones import drop_tones, find_visemes, is_arpabet
 
 Array = NDArray[Any]
 LONGEST = 3600.0  # seconds of a line
@@ -173,6 +173,8 @@ class MouthCues:
                 return lambda label: ([table.get(label, "sil")], WEAK.get(label, 1.0))
         bare = {label: re.sub(r"_[BIES]$", "", label) for label in given}
         arpabet = is_arpabet(bare.values())
+        toneless = drop_tones(bare.values())
+        bare = {label: toneless[one] for label, one in bare.items()}
         silent = sum(not find_visemes(one, arpabet)[0] for one in bare.values())
         if 2 * silent > len(given) + 2 or any(len(one) > 12 or one.isdigit() for one in given):
             known = ", ".join(SHAPE_SETS)

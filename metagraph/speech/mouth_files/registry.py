@@ -5,7 +5,7 @@ made from this list (`docs/readers_page.py`).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from metagraph.common.budgets import MARKS_FILE
@@ -14,7 +14,7 @@ from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.speech.mouth_files import cues, dumps
 from metagraph.speech.mouth_files.model import MouthFile, MouthShapes
-from metagraph.speech.phones import list_mouth_pieces
+from metagraph.speech.phones import list_mouth_pieces, list_phone_tiers
 from metagraph.speech.textgrid import read_textgrid
 
 
@@ -42,7 +42,15 @@ def _is_grid(file: MouthFile) -> bool:
 def _read_grid(file: MouthFile) -> MouthShapes:
     grid = read_textgrid(file.path)
     pieces = list_mouth_pieces(grid)
-    return MouthShapes(tuple(pieces), end=max([grid.end, *(p.end for p in pieces)]))
+    tiers, notes = list_phone_tiers(grid), []
+    if len(tiers) > 1:
+        others = ", ".join(f"'{t.name}'" for t in tiers[1:6])
+        notes.append(
+            phrase(
+                "its phones are those of tier '{name}'; not read: {others}", name=tiers[0].name, others=others
+            )
+        )
+    return MouthShapes(tuple(pieces), end=max([grid.end, *(p.end for p in pieces)]), notes=tuple(notes))
 
 
 MOUTH_READERS: tuple[MouthReader, ...] = (
@@ -150,4 +158,13 @@ def read_mouth_file(path: str | Path, sound: float | None = None) -> MouthShapes
             phrase("its beginning"),
             phrase("Known formats are {names}.", names=names),
         )
-    return reader.read(file)
+    found = reader.read(file)
+    if sound is None or found.end <= 1.25 * sound + 1.0:
+        return found
+    told = phrase(
+        "its shapes end at {end:.1f} s and the sound at {sound:.1f} s: it may be of another sound, or its "
+        "times in another unit",
+        end=found.end,
+        sound=sound,
+    )
+    return replace(found, notes=(*found.notes, told))

@@ -36,6 +36,19 @@ def test_an_annotation_with_nothing_in_it_says_so_and_changes_nothing_but_the_me
     assert made.project == Project(tiers={"words": "ignore"})
 
 
+def test_people_who_are_not_read_are_told() -> None:
+    def hand(name: str, who: str, count: int) -> AnnotationTier:
+        return AnnotationTier(
+            name, tuple(AnnotationInterval(n, n + 0.5, "stroke") for n in range(count)), participant=who
+        )
+
+    both = begin_reading(Annotation((hand("A_LH", "Ann", 2), hand("B_LH", "Bob", 3), tier("words", "hi"))))
+    (told,) = [x for x in describe_doubts(both) if "Several people" in x]
+    assert "Bob is read" in told and "A_LH" in told and "words" not in told
+    alone = begin_reading(Annotation((hand("A_LH", "Ann", 2), hand("A_RH", "Ann", 3))))
+    assert not any("Several people" in x for x in describe_doubts(alone))
+
+
 def test_roles_and_meanings_can_be_said_otherwise_and_what_was_said_stays() -> None:
     reading = begin_reading(Annotation((tier("A", "cup", "box"), tier("B", "cup"))))
     assert reading.observed == {}

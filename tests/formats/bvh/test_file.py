@@ -290,13 +290,21 @@ def test_numbers_of_many_digits_keep_their_precision(path: Path) -> None:
         ("0.0333333", 30), (".0083333", 120), ("0.008333", 120), ("0.016667", 60), ("0.04", 25),
         ("0.033", 30),
         ("0.016666666666666666", 60), ("0.0417083750417", 1 / 0.0417083750417),
-        ("0.0333667", 1 / 0.0333667), ("1", 1),
+        ("0.0333667", 1 / 0.0333667), ("1", 1), ("0.017", 60), ("0.016", 60), ("0.03", 30), ("0.042", 24),
+        ("0.01", 100), ("0.02", 50),
     ],
 )  # fmt: skip
 def test_frame_times_give_whole_rates_only_where_their_digits_say_so(
     path: Path, time: str, fps: float
 ) -> None:
     assert read(path, figure(time=time)).fps == pytest.approx(fps, rel=1e-12)
+
+
+def test_a_frame_time_of_few_digits_is_reported(path: Path) -> None:
+    assert read(path, figure(time="0.03")).notes == (
+        "its frame time of 0.03 s was taken for 30 frames a second",
+    )
+    assert read(path, figure(time="0.033")).notes == ()
 
 
 def test_braces_and_keywords_may_stand_anywhere(path: Path) -> None:

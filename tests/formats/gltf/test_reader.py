@@ -252,9 +252,10 @@ def test_the_frame_rate_is_found_from_the_keys(tmp_path: Path, fps: float) -> No
     assert clip.frames == 101
 
 
-def test_a_start_after_zero_is_moved_to_zero_with_a_note(tmp_path: Path) -> None:
+@pytest.mark.parametrize("times", [[2, 3], [-1, 0]])
+def test_a_start_that_is_not_zero_is_moved_to_zero_with_a_note(tmp_path: Path, times: list[int]) -> None:
     scene = Scene(bones())
-    scene.animate("late", (1, "rotation", [2, 3], TURN, "LINEAR"))
+    scene.animate("late", (1, "rotation", times, TURN, "LINEAR"))
     clip = read_one(scene, tmp_path)
     assert clip.frames == 31 and any("starts at" in note for note in clip.notes)
 

@@ -445,6 +445,17 @@ def test_points_of_human36m_are_told_from_those_of_coco_by_their_names(read: Any
     assert sure[0, PLACE["left_ear"]] == 0 and any("Human3.6M" in n for n in found.notes)
 
 
+def test_points_of_human36m_are_told_by_where_they_lie(read: Any) -> None:
+    at = np.array([FIGURE.get(name, (0, 1.45, 0)) for name in H36M], float)
+    at[0] = (at[H36M.index("left_hip")] + at[H36M.index("right_hip")]) / 2
+    found = read({"fps": 30, "frames": [{"keypoints_3d": (at * [1, -1, -1]).tolist()}] * 3})
+    upright(found)
+    assert found.canonical[0][0, PLACE["left_wrist"]] == pytest.approx(FIGURE["left_wrist"], abs=1e-6)
+    assert any("taken for Human3.6M's" in note for note in found.notes)
+    coco = read([{"keypoints": flat(picture("coco"))}] * 3)
+    assert not any("Human3.6M" in note for note in coco.notes)
+
+
 def test_people_of_one_picture_in_a_list_are_one_frame(read: Any) -> None:
     rows = [
         {"image_id": f"{n}.jpg", "keypoints": flat(picture("coco", x)), "score": 2.0, "idx": n}

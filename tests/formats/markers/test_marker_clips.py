@@ -14,6 +14,7 @@ from metagraph.formats.clips import read_clips
 from metagraph.formats.keypoints.reader import read_keypoints
 from metagraph.formats.markers.marker_clips import measure_skeleton, read_marker_clip, read_marker_track
 from metagraph.formats.markers.marker_reading import read_markers
+from metagraph.formats.markers.marker_take import find_metres
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
@@ -89,6 +90,69 @@ def test_a_marker_that_was_not_seen_for_a_moment_is_bridged(tmp_path, clip):
         path.write_bytes(data)
         assert np.isnan(read_markers(path).places).any(), "what was not seen is no place"
         assert off(clip, read_marker_clip(path)) < 15.0
+
+
+@pytest.mark.parametrize("kind", ["trc", "c3d"])
+def test_a_marker_in_the_origin_was_not_seen(tmp_path, clip, kind):
+    markers = joint_markers(clip)
+    gone = {name: places.copy() for name, places in markers.items()}
+    gone["LWrist"][3:6] = 0.0
+    data = write_trc(gone, 30.0) if kind == "trc" else write_c3d(gone, 30.0)
+    path = tmp_path / f"take.{kind}"
+    path.write_bytes(data)
+    take = read_markers(path)
+    seen = np.isfinite(take.places[:, take.names.index("LWrist")]).all(-1)
+    assert np.flatnonzero(~seen).tolist() == [3, 4, 5]
+
+
+def test_of_two_subjects_one_is_read_and_not_a_mixture(tmp_path, clip):
+    ann = {f"Ann:{name}": at + [3.0, 0.0, 0.0] for name, at in joint_markers(clip).items()}
+    bob = {f"Bob:{name}": at for name, at in joint_markers(clip).items() if name != "LElbow"}
+    path = tmp_path / "take.c3d"
+    path.write_bytes(write_c3d(bob | ann, 30.0))
+    track = read_marker_track(path)
+    assert "it has several subjects: Ann is read, not Bob" in track.notes
+    alone = tmp_path / "alone.c3d"
+    alone.write_bytes(write_c3d(ann, 30.0))
+    assert np.abs(track.points - read_marker_track(alone).points).max() < 1e-6
+
+
+def test_a_trc_marker_without_a_name_moves_no_others(tmp_path, clip):
+    markers = joint_markers(clip)
+    text = write_trc({"X": next(iter(markers.values())) + 5.0} | markers, 30.0)
+    path = tmp_path / "take.trc"
+    path.write_bytes(text.replace(b"Time\tX\t", b"Time\t\t"))
+    take = read_markers(path)
+    assert take.names == ("unnamed 1", *markers)
+    assert take.places[:, 1] == pytest.approx(next(iter(markers.values())), abs=1e-3)
+
+
+@pytest.mark.parametrize(("word", "metres"), [("inches", 0.0254), ("Inch", 0.0254), ("feet", 0.3048)])
+def test_units_are_known_by_their_whole_words(tmp_path, word, metres):
+    assert find_metres(tmp_path, word) == metres
+
+
+def test_decimal_commas_of_a_trc_file_are_points(tmp_path, clip):
+    markers = joint_markers(clip)
+    path = tmp_path / "take.trc"
+    path.write_bytes(write_trc(markers, 29.97).replace(b"take.trc", b"take").replace(b".", b","))
+    take = read_markers(path)
+    assert take.rate == 29.97 and take.notes == ("its decimal commas were read as points",)
+    assert take.places[:, 0] == pytest.approx(next(iter(markers.values())), abs=1e-3)
+
+
+@pytest.mark.parametrize(("unit", "said", "way"), [("mm", "m", "smaller"), ("m", "mm", "larger")])
+def test_a_file_that_names_the_wrong_unit_has_a_person_all_the_same(tmp_path, clip, unit, said, way):
+    path = tmp_path / "take.trc"
+    right = write_trc(joint_markers(clip), 30.0, unit)
+    path.write_bytes(right)
+    want = read_marker_clip(path)
+    path.write_bytes(right.replace(f"\t{unit}\t".encode(), f"\t{said}\t".encode()))
+    found = read_marker_clip(path)
+    assert found.skeleton.height == pytest.approx(want.skeleton.height, rel=0.01)
+    assert any(f"1000 times {way}" in note for note in found.notes) and not any(
+        "1000 times" in note for note in want.notes
+    )
 
 
 def test_mimic_reads_markers_as_keypoints_in_three_dimensions(tmp_path, clip):

@@ -74,6 +74,15 @@ def test_what_was_inferred_is_told(tmp_path: Path, kind: str, told: str) -> None
     assert any(told in note for note in read(tmp_path, kind).notes)
 
 
+def test_a_first_column_that_counts_frames_is_no_time(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    rows = [[n, *(float(k == (1 if n < 60 else 10)) for k in range(15))] for n in range(120)]
+    path.write_text("\n".join(",".join(map(str, row)) for row in rows))
+    found = read_mouth_file(path, 2.0)
+    assert (shown(found, 0.5), shown(found, 1.5)) == ("PP", "aa") and found.end < 2.0
+    assert found.notes == ("it has no times: its frames lie evenly over 2.00 s",)
+
+
 def test_moho_frames_that_do_not_fit_the_sound_are_at_a_higher_rate(tmp_path: Path) -> None:
     found = read(tmp_path, "moho, rhubarb", 0.8)
     assert found.pieces[0].start == pytest.approx(0.25) and any("48 were taken" in n for n in found.notes)
@@ -129,3 +138,48 @@ def test_a_line_without_sound_lasts_as_long_as_its_shapes(tmp_path: Path) -> Non
         name, text = MADE_MOUTHS[kind]
         (tmp_path / name).write_text(text, encoding="utf-8")
         assert make_voice_from_phones(tmp_path / name).duration == pytest.approx(2.0, abs=0.03)
+
+
+def test_the_phones_of_other_speakers_are_told(tmp_path: Path) -> None:
+    tiers = "".join(
+        f'"IntervalTier"\n"{who} - phones"\n0\n1\n1\n0\n1\n"{phone}"\n'
+        for who, phone in (("Ann", "AA1"), ("Bob", "IY1"))
+    )
+    path = tmp_path / "two.TextGrid"
+    path.write_text(f'File type = "ooTextFile"\nObject class = "TextGrid"\n\n0\n1\n<exists>\n2\n{tiers}')
+    found = read_mouth_file(path)
+    assert [p.viseme for p in found.pieces] == ["aa"]
+    assert found.notes == ("its phones are those of tier 'Ann - phones'; not read: 'Bob - phones'",)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "told"),
+    [
+        ("a.tsv", "0,00\tX\n0,50\tD\n1,00\tA\n1,50\tX\n", "its decimal commas were read as points"),
+        ("a.csv", "0,00;X\n0,50;D\n1,00;A\n1,50;X\n", "its decimal commas were read as points"),
+        ("a.csv", "start,duration,phone\n0.0,0.5,sil\n0.5,0.5,AA1\n1.0,0.5,M\n", "ARPAbet"),
+        ("a.lab", "separator ;\nnfields 1\n#\n0.5 121 pau\n1.0 121 aa\n1.5 121 m\n1.9 121 pau\n", "ARPAbet"),
+        ("a.json", '[{"start": 0.5, "duration": 0.5, "value": "aa"}, '
+         '{"start": 1, "duration": 0.5, "value": "PP"}]', "Oculus"),
+    ],
+    ids=["commas and tabs", "commas and semicolons", "durations", "xwaves labels", "durations in JSON"],
+)  # fmt: skip
+def test_tables_mean_what_their_programs_mean_by_them(
+    tmp_path: Path, name: str, text: str, told: str
+) -> None:
+    path = tmp_path / name
+    path.write_text(text)
+    found = read_mouth_file(path, 2.0)
+    assert [shown(found, t) for t in (0.2, 0.55, 0.95, 1.05, 1.45, 1.7)] == [
+        "sil", "aa", "aa", "PP", "PP", "sil",
+    ]  # fmt: skip
+    assert any(told in note for note in found.notes)
+
+
+def test_shapes_that_end_long_after_the_sound_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "frames.tsv"
+    path.write_text("1\tX\n12\tD\n20\tB\n47\tX\n")
+    assert any(
+        "its shapes end at 47.2 s and the sound at 2.0 s" in x for x in read_mouth_file(path, 2.0).notes
+    )
+    assert not any("the sound at" in x for x in read_mouth_file(path).notes)
