@@ -60,7 +60,7 @@ def test_without_the_library_the_error_says_what_to_install(
 ) -> None:
     (tmp_path / "a.fbx").write_bytes(KAYDARA)
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    refused(tmp_path / "a.fbx", "ufbx", "pip install 'metagraph-studio[fbx]'")
+    refused(tmp_path / "a.fbx", "ufbx", "pip install", "Help > Extras")
 
 
 @needs_ufbx
@@ -88,7 +88,7 @@ def test_a_file_without_motion_is_refused(tmp_path: Path) -> None:
         ("import os; os.kill(os.getpid(), 11)", "crashed"),
         ("import time; time.sleep(60)", "within"),
         ("import sys; print('odd', file=sys.stderr); sys.exit(9)", "could not be converted (odd)"),
-        ("import sys; sys.exit(4)", "reinstall"),
+        ("import sys; sys.exit(4)", "install it again"),
         ("print('neither glTF nor an answer')", "talks nonsense"),
         (ANSWER + "answer(b'no glTF')", "neither a binary nor a text"),
     ],
