@@ -75,7 +75,7 @@ EXTRAS: Mapping[str, Extra] = {
         "pylsl",
         ("pylsl>=1.16",),
         phrase("Lab recorders (LSL)"),
-        phrase("markers for lab recorders (LSL)"),
+        phrase("streams to and from devices of laboratories (LSL)"),
         1,
         5,
         "MIT",
