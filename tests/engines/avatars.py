@@ -83,15 +83,18 @@ def make_avatar(
     tall: float = 1.0,
     legs: float = 1.0,
     turned: bool = False,
+    shrunk: bool = False,
     vrm: int | None = None,
+    loose: tuple[str, ...] = (),
     bare: bool = False,
 ) -> Path:
     """Write a sample character as another program would: in a T, with joints that are turned as that program
     turns its own.
 
     unit: metres to the file's. tall: of all. legs: of the bones below the hips alone. turned: half a turn, to
-    face -Z. vrm: 0 or 1, its humanoid in the way of that version, and joints without a meaning in their
-    names. bare: without pictures, which Node cannot decode.
+    face -Z. shrunk: a node above makes the file's unit metres. vrm: 0 or 1, its humanoid in the way of that version, and joints without a meaning in their
+    names. loose: roles whose joints hang on nothing, as in rigs with IK. bare: without pictures, which
+    Node cannot decode.
     """
     skeleton = read_character(source).skeleton
     roles = find_known_roles(skeleton, None)
@@ -111,8 +114,15 @@ def make_avatar(
     rng = np.random.default_rng(5)
     frames = rotation.normalize(rng.normal(size=(len(skeleton), 4)))
     own = rotation.multiply(turns, frames)
+    parents = [-1 if n in [roles[r] for r in loose] else int(p) for n, p in enumerate(skeleton.parents)]
+    for n in (roles[r] for r in loose):
+        above = document["nodes"][joints[int(skeleton.parents[n])]]
+        above["children"].remove(joints[n])
+        if not above["children"]:
+            above.pop("children")
+        document["scenes"][0]["nodes"].append(joints[n])
     for n, joint in enumerate(joints):
-        parent = int(skeleton.parents[n])
+        parent = parents[n]
         over = own[parent] if parent >= 0 else rotation.IDENTITY
         away = places[n] - (places[parent] if parent >= 0 else 0)
         back = rotation.conjugate(over)
@@ -123,8 +133,10 @@ def make_avatar(
     called = {joint: name for role, joint in roles.items() if (name := name_in_family(family, role))}
     for n, joint in enumerate(joints):
         document["nodes"][joint]["name"] = f"joint {n}" if vrm is not None else called.get(n, f"extra {n}")
-    if turned:
-        top = {"name": "Armature", "rotation": [0, 1, 0, 0], "children": document["scenes"][0]["nodes"]}
+    if turned or shrunk:
+        top = {"name": "Armature", "children": document["scenes"][0]["nodes"]}
+        top["rotation"] = [0, 1, 0, 0] if turned else [0, 0, 0, 1]
+        top["scale"] = [1 / unit] * 3 if shrunk else [1, 1, 1]
         document["nodes"].append(top)
         document["scenes"][0]["nodes"] = [len(document["nodes"]) - 1]
     if vrm is not None:
@@ -185,7 +197,9 @@ def _rebind(document: dict[str, Any], data: bytes, frames: Any, size: float) -> 
     turn[:, 3, 3] = 1
     for n in range(3):
         axis = np.eye(3)[n]
-        turn[:, :3, n] = rotation.rotate_vectors(rotation.conjugate(frames), np.broadcast_to(axis, (count, 3)))
+        turn[:, :3, n] = rotation.rotate_vectors(
+            rotation.conjugate(frames), np.broadcast_to(axis, (count, 3))
+        )
     new = np.diag([size, size, size, 1.0]) @ turn @ old
     out = new.transpose(0, 2, 1).astype("<f4").tobytes()
     accessor.pop("min", None)
@@ -205,7 +219,9 @@ def _tell_humanoid(
         for part in (one, *one["primitives"]):
             part.pop("extras", None)  # only the expressions tell what they are
     if version == 1:
-        binds = {p: {"morphTargetBinds": [{"node": mesh, "index": n, "weight": 1}]} for p, n in places.items()}
+        binds = {
+            p: {"morphTargetBinds": [{"node": mesh, "index": n, "weight": 1}]} for p, n in places.items()
+        }
         document["extensions"] = {
             "VRMC_vrm": {
                 "specVersion": "1.0",

@@ -61,14 +61,18 @@ export class AvatarFace {
     this.missing = graph.morphs.filter((name) => !targets.has(simplify(name)));
     const expressions = parser ? expressionsOf(parser, scene) : new Map();
     const channels = SHOWN.filter((channel) => channel !== "blink" && !(eyes && channel.startsWith("look_")) && !(lids && channel.startsWith("blink")));
-    this.worked = channels.flatMap((channel) => {
-      const from = SHOWN.indexOf(channel);
-      const by = (table, mix) => sided(mix ?? {}).flatMap(([name, share]) => (table.get(name) ?? []).map((at) => ({ ...at, from, share: share * (at.share ?? 1) })));
-      const told = by(expressions, blinkOf(channel, expressions) ?? EXPRESSIONS[channel] ?? LOOKS[channel]);
-      if (told.length) return told;
-      const own = by(targets, { [simplify(channel)]: 1 });
-      return own.length ? own : by(targets, blinkOf(channel, targets) ?? ARKIT[channel] ?? lookOf(channel));
-    }).filter((at) => !taken.has(key(at)));
+    /** Channels that move something: their place in SHOWN, and the targets with their shares. */
+    this.worked = channels.map((channel) => {
+      const by = (table, mix) => sided(mix ?? {}).flatMap(([name, share]) => (table.get(name) ?? []).map((at) => ({ ...at, share: share * (at.share ?? 1) })));
+      const ways = [
+        by(expressions, blinkOf(channel, expressions) ?? EXPRESSIONS[channel] ?? LOOKS[channel]),
+        by(targets, { [simplify(channel)]: 1 }),
+        by(targets, blinkOf(channel, targets) ?? ARKIT[channel] ?? lookOf(channel)),
+      ];
+      const found = ways.find((way) => way.length) ?? [];
+      return { from: SHOWN.indexOf(channel), moved: found.filter((at) => !taken.has(key(at))) };
+    }).filter(({ moved }) => moved.length);
+    this.cleared = [...new Map(this.worked.flatMap(({ moved }) => moved.map((at) => [key(at), at]))).values()];
     /** Whether the life layers' mouth shapes are shown by other targets than the graph's. */
     this.speaks = this.worked.some(({ from }) => SHOWN[from].startsWith("viseme_"));
   }
@@ -80,9 +84,13 @@ export class AvatarFace {
     for (const { mesh, place, from } of named) mesh.morphTargetInfluences[place] = weights[from];
     if (!worked.length) return;
     const values = character.player.channels(character.now);
-    for (const { mesh, place } of worked) mesh.morphTargetInfluences[place] = 0;
-    for (const { mesh, place, from, share } of worked) {
-      if (values[from] > 0) mesh.morphTargetInfluences[place] = Math.min(1, mesh.morphTargetInfluences[place] + share * values[from]);
+    for (const { mesh, place } of this.cleared) mesh.morphTargetInfluences[place] = 0;
+    for (const { from, moved } of worked) {
+      const value = values[from];
+      if (value < 1e-4) continue;
+      for (const { mesh, place, share } of moved) {
+        mesh.morphTargetInfluences[place] = Math.min(1, mesh.morphTargetInfluences[place] + share * value);
+      }
     }
   }
 }

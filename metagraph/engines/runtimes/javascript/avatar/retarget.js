@@ -88,11 +88,14 @@ export class Retarget {
     };
     this.own = own;
     this.parents = [...own];
+    const hips = roles.get("hips");
     const carries = roles.get(["upper_chest", "chest", "spine", "hips"].find((role) => roles.has(role)));
     for (const side of SIDES) {
       const [upperLeg, lowerLeg, foot, upperArm, lowerArm, hand] = [...LEG, ...ARM].map((part) => roles.get(`${side}_${part}`));
-      const hips = roles.get("hips");
-      const wants = [[upperLeg, hips, hips], [lowerLeg, upperLeg, upperLeg], [foot, lowerLeg, lowerLeg], [upperArm, hips, carries], [lowerArm, upperArm, upperArm], [hand, lowerArm, lowerArm]];
+      const wants = [
+        [upperLeg, hips, hips], [lowerLeg, upperLeg, upperLeg], [foot, lowerLeg, lowerLeg],
+        [upperArm, hips, carries], [lowerArm, upperArm, upperArm], [hand, lowerArm, lowerArm],
+      ]; // joint, below which it should be, and where it is attached if it is not
       for (const [joint, over, to] of wants) {
         // Legs below the spine, as in bipeds of 3ds Max, follow the hips, too.
         const lumbar = joint === upperLeg && roles.has("spine") && chain(joint).includes(roles.get("spine"));
@@ -101,6 +104,8 @@ export class Retarget {
     }
     const depth = (joint) => (this.parents[joint] < 0 ? 0 : 1 + depth(this.parents[joint]));
     this.order = own.map((_, j) => [depth(j), j]).sort((a, b) => a[0] - b[0] || a[1] - b[1]).map(([, j]) => j);
+    const hangs = (joint) => joint >= 0 && (joint === hips || hangs(this.parents[joint]));
+    this.carried = this.order.filter(hangs);
     this.localTurns = own.map((_, j) => (this.parents[j] < 0 ? rotations[j] : times(back(rotations[this.parents[j]]), rotations[j])));
     this.localPlaces = own.map((_, j) => {
       return this.parents[j] < 0 ? positions[j] : rotated(back(rotations[this.parents[j]]), minus(positions[j], positions[this.parents[j]]));
@@ -200,13 +205,11 @@ export class Retarget {
       const [one, two] = target.bones(side, LEG);
       drop = Math.max(drop, -away[1] - Math.sqrt(Math.max(0, (one + two) ** 2 - away[0] ** 2 - away[2] ** 2)));
     }
-    const hips = target.roles.get("hips");
-    let goal = plus(this.places[hips], shift);
-    goal[1] -= Math.min(drop, LOWEST * target.legLength);
-    const over = this.parents[hips];
-    if (over >= 0) goal = rotated(back(this.turns[over]), minus(goal, this.places[over]));
-    this.moves[hips] = goal;
-    this.walk();
+    shift[1] -= Math.min(drop, LOWEST * target.legLength);
+    for (const joint of this.carried) this.places[joint] = plus(this.places[joint], shift);
+    const hips = target.roles.get("hips"), over = this.parents[hips];
+    const goal = this.places[hips];
+    this.moves[hips] = over < 0 ? goal : rotated(back(this.turns[over]), minus(goal, this.places[over]));
   }
 
   /** Turn the two bones of a limb so that its end reaches a place. */
