@@ -92,9 +92,9 @@ def make_avatar(
     turns its own.
 
     unit: metres to the file's. tall: of all. legs: of the bones below the hips alone. turned: half a turn, to
-    face -Z. shrunk: a node above makes the file's unit metres. vrm: 0 or 1, its humanoid in the way of that version, and joints without a meaning in their
-    names. loose: roles whose joints hang on nothing, as in rigs with IK. bare: without pictures, which
-    Node cannot decode.
+    face -Z. shrunk: a node above makes the file's unit metres. vrm: 0 or 1, its humanoid in the way of that
+    version, and joints without a meaning in their names. loose: roles whose joints hang on nothing, as in
+    rigs with IK. bare: without pictures, which Node cannot decode.
     """
     skeleton = read_character(source).skeleton
     roles = find_known_roles(skeleton, None)

@@ -79,7 +79,8 @@ def write(order: ExportOrder) -> ExportedFiles:
     early += [
         f'<link rel="modulepreload" href="{path.relative_to(order.folder).as_posix()}">'
         for path in files
-        if path.suffix == ".js" and "avatar" not in (path.stem, path.parent.name)  # only pages with one need it
+        # avatars' modules only pages with an avatar need
+        if path.suffix == ".js" and "avatar" not in (path.stem, path.parent.name)
     ]
     page = page.replace(
         "<!-- fetch early -->", "\n    ".join(early)
