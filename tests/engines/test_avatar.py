@@ -160,7 +160,7 @@ def test_the_joints_of_each_family_of_names_have_their_roles(family: str) -> Non
         json.dumps(names),
         json.dumps([int(p) for p in skeleton.parents]),
     )
-    assert found == wanted and len(wanted) == 53
+    assert found == wanted and len(wanted) == 54
 
 
 def test_helpers_and_ends_of_other_rigs_take_no_role() -> None:

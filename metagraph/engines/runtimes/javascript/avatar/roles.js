@@ -101,7 +101,7 @@ function findTrunk(roles, read, parents, { above, biggest, called, below }) {
     }
   }
   if (heads.length) roles.set("head", biggest(heads));
-  else if (line.length) roles.set("head", line.at(-1));
+  else if (line.length) roles.set("head", line.findLast((j) => read[j].joined === read[over].joined) ?? line.at(-1)); // Rigify's spine ends in it
   const head = roles.get("head");
   const ends = [...pair("upper_leg"), ...(head === undefined ? [] : [head])];
   const named = called((one) => free(one) && /^(hips?|pelvis)$/.test(one.joined)).filter((j) => ends.every((end) => above(end).includes(j)));
