@@ -21,6 +21,7 @@ from metagraph.graph.model import Project
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import hear_asks
 from tests.browsing import Browser
+from tests.engines.avatars import make_avatar, without_legs
 from tests.engines.web_tools_kept import kept_web_tools
 from tests.posing import pose_at
 
@@ -240,6 +241,63 @@ def test_a_character_is_in_any_page_in_five_lines(page: Path, tmp_path: Path, br
     assert one and both[0] and "none.json is not there (404)" in both[1]
     assert views[0] < views[1] / 2  # the face from near
     assert row[0] <= row[1] + 0.5  # a row that shares its width is no wider than the window
+
+
+@pytest.mark.nightly
+def test_a_page_shows_another_look_changes_it_and_tells_what_cannot_be_used(
+    page: Path, tmp_path: Path, browse: Browser
+) -> None:
+    """Ben, as Mixamo and as both versions of VRM write him, stands upright where Ada would, and moves as she
+    does.
+    """
+    folder = tmp_path / "page"
+    shutil.copytree(page, folder)
+    make_avatar(folder / "mixamo.glb", "mixamo", unit=100)
+    make_avatar(folder / "one.vrm", vrm=1)
+    make_avatar(folder / "old.vrm", vrm=0, turned=True)
+    without_legs(folder / "legless.glb")
+    (folder / "junk.glb").write_bytes(b"no model at all")
+    (folder / "look.html").write_text(
+        '<metagraph-character id="a" src="sample.json" seed="7" paused camera="front" background="#ff00ff" '
+        f'style="width: 500px"></metagraph-character><script type="module" src="{web.CHARACTER}"></script>'
+    )
+    heard = """(() => { window.told = []; a.addEventListener("error", (e) => told.push(e.detail.message));
+      a.addEventListener("avatar", (e) => told.push(e.detail.avatar ? e.detail.missing.length : "own")); })()"""
+    state = """[told.splice(0), a.object.scene.visible, a.object.avatar?.scene.visible ?? null, a.stage.scene.children.length,
+      a.time, a.message.textContent, performance.getEntriesByType("resource").some((one) => one.name.endsWith("/avatar.js"))]"""
+    picture = "(() => { a.stage.draw(); return a.stage.canvas.toDataURL('image/png'); })()"
+    steps: list[dict[str, str]] = [{"url": "look.html", "until": "a.object"}, {"run": heard}]
+    steps += [{"run": "a.seek(12.3)"}, {"run": picture}, {"run": state}]
+    for look in ("mixamo.glb", "old.vrm", "one.vrm", "legless.glb", "junk.glb", "none.glb", ""):
+        steps += [
+            {"run": f"a.avatar = '{look}'"}, {"until": "told.length"}, {"run": picture}, {"run": state},
+        ]  # fmt: skip
+    values, errors = browse(folder, *steps)
+    pictures = [value for value in values if isinstance(value, str) and value.startswith("data:")]
+    own, mixamo, old, one, *failed, last = [
+        value for value in values if isinstance(value, list) and len(value) == 7
+    ]
+    assert (
+        own[1:4] == [True, None, own[3]] and not own[6]
+    )  # nothing of avatars is fetched before there is one
+    for said, own_seen, seen, objects, time, message, fetched in (mixamo, old, one):
+        assert (own_seen, seen, objects, message, fetched) == (False, True, own[3] + 1, "", True)
+        assert said == [7] and abs(time - 12.3) < 1e-6
+    told = [state[0][0] for state in failed]
+    assert "no humanoid" in told[0] and "cannot be used" in told[1] and "not there (404)" in told[2]
+    for state_then in failed:
+        assert state_then[1:4] == one[1:4] and state_then[5] == state_then[0][0]  # it stays as it was
+    assert last[0] == ["own"] and last[1] and last[3] == own[3] and last[5] == ""
+    seen = [
+        np.asarray(Image.open(io.BytesIO(base64.b64decode(p.split(",")[1]))).convert("RGB"), int)
+        for p in pictures
+    ]
+    ada, first, second, third, *_, again = [np.abs(p - [255, 0, 255]).sum(-1) > 60 for p in seen]
+    assert (ada != again).mean() < 1e-3
+    assert (first != second).mean() < 0.002 and (second != third).mean() < 0.002
+    both = (ada & first).sum() / (ada | first).sum()
+    assert 0.6 < both < 0.95, both  # he stands where she does, in other clothes
+    assert [e for e in errors if "404" not in e and "cannot be used" not in e and "none.glb" not in e] == []
 
 
 @pytest.mark.nightly

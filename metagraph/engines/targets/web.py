@@ -16,6 +16,7 @@ from metagraph.engines.targets.web_tools import (
 from metagraph.formats.atomic import write_atomically
 
 CHARACTER = "metagraph-character.js"  # the element, and with it all that it needs
+AVATAR = "avatar.js"  # what other looks need, which the element imports for the first of them
 _WHOSE = f"/*! Metagraph's player with three.js {THREE}, MIT, threejs.org */\n".encode()
 _HOST = NET.split("/")[2]
 _FROM_THE_NET = f"""<p id="net">
@@ -43,16 +44,20 @@ def write(order: ExportOrder) -> ExportedFiles:
     page = page.replace("EXPORT.json", f"{order.stem}.json")
     files = [*copy_runtime(RUNTIMES / "web" / "player", order.folder / "player")]
     notes = list(made.notes)
-    whole = bundle_module(RUNTIMES / "javascript" / "element.js") if is_three_at_hand() else None
+    runtime = RUNTIMES / "javascript"
+    whole = bundle_module(runtime / "element.js", (f"./{AVATAR}",)) if is_three_at_hand() else None
+    looks = bundle_module(runtime / AVATAR) if whole is not None else None
     element = order.folder / CHARACTER
     files.append(element)
     where = said = ""
-    if whole is not None:
+    if whole is not None and looks is not None:
         write_atomically(element, _WHOSE + whole)
+        files.append(order.folder / AVATAR)
+        write_atomically(files[-1], looks)
     else:
         write_atomically(element, _MODULES)
         leave = ("conformance.mjs", "conformance.d.mts")
-        files += copy_runtime(RUNTIMES / "javascript", order.folder / "metagraph", leave)
+        files += copy_runtime(runtime, order.folder / "metagraph", leave)
         theirs = read_three()
         for name, content in (theirs or {}).items():
             files.append(order.folder / "three" / name)
@@ -74,7 +79,8 @@ def write(order: ExportOrder) -> ExportedFiles:
     early += [
         f'<link rel="modulepreload" href="{path.relative_to(order.folder).as_posix()}">'
         for path in files
-        if path.suffix == ".js"
+        # avatars' modules only pages with an avatar need
+        if path.suffix == ".js" and "avatar" not in (path.stem, path.parent.name)
     ]
     page = page.replace(
         "<!-- fetch early -->", "\n    ".join(early)

@@ -66,8 +66,10 @@ def read_three() -> dict[str, bytes] | None:
     )
 
 
-def bundle_module(entry: Path) -> bytes | None:
-    """Return a module with all it imports, three.js too, as one minified file; None if that cannot be."""
+def bundle_module(entry: Path, beside: tuple[str, ...] = ()) -> bytes | None:
+    """Return a module with all it imports, three.js too, as one minified file; None if that cannot be.
+    beside: modules that stay files of their own, as they are imported ("./avatar.js").
+    """
     modules, program, files = _modules(), _esbuild(), read_three()
     if modules is None or program is None or files is None:
         return None
@@ -82,7 +84,7 @@ def bundle_module(entry: Path) -> bytes | None:
             "--charset=utf8", "--legal-comments=inline", "--log-level=error", "--tsconfig-raw={}",
             f"--alias:three/addons={(folder / 'three' / 'examples' / 'jsm').as_posix()}",
             f"--alias:three={(folder / 'three' / 'build' / 'three.module.js').as_posix()}",
-            f"--outfile={out}",
+            f"--outfile={out}", *(f"--external:{module}" for module in beside),
         ]  # fmt: skip
         try:
             code, _ = programs.run_program(command, LONGEST)

@@ -1,5 +1,12 @@
 import type { Answer, Ask, Character, Description, Happening } from "./index.js";
+import type { Avatar } from "./avatar.js";
 import type { MetagraphObject } from "./three.js";
+
+export interface AvatarWorn {
+  avatar: Avatar | null;
+  /** Joints and morph targets of the export that move nothing of it. */
+  missing: readonly string[];
+}
 
 export interface SayOptions {
   id?: string;
@@ -23,6 +30,8 @@ export class MetagraphCharacter extends HTMLElement {
   /** Seconds of the character's own time. */
   readonly time: number;
   paused: boolean;
+  /** The address of the humanoid that is shown instead of the export's own character; null for that. Also a `blob:` address. */
+  avatar: string | null;
   describe(): Description | null;
   /** Ask for something, before it is loaded, too; returns the request's id. */
   ask(request: Ask): string;
@@ -38,6 +47,8 @@ export class MetagraphCharacter extends HTMLElement {
   /** Move on to a time, and stay there. */
   seek(seconds: number): void;
   addEventListener(type: "begin" | "end", listener: (event: CustomEvent<Happening>) => void, options?: boolean | AddEventListenerOptions): void;
+  /** Another look was put on, or taken off (`avatar` is null). */
+  addEventListener(type: "avatar", listener: (event: CustomEvent<AvatarWorn>) => void, options?: boolean | AddEventListenerOptions): void;
   addEventListener(type: "error", listener: (event: CustomEvent<Error>) => void, options?: boolean | AddEventListenerOptions): void;
   addEventListener(type: string, listener: EventListenerOrEventListenerObject, options?: boolean | AddEventListenerOptions): void;
 }
@@ -45,6 +56,8 @@ export class MetagraphCharacter extends HTMLElement {
 /** What the element takes in HTML, and in JSX. */
 export interface MetagraphCharacterAttributes {
   src?: string;
+  /** Address of a VRM or another GLB of a humanoid, shown instead of the export's own character. */
+  avatar?: string;
   /** Words such as "face", or "upper front". */
   camera?: string;
   background?: string;

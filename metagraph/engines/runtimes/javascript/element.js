@@ -1,15 +1,16 @@
 /**
  * `<metagraph-character src="sample.json">`: a character in a page. Needs three.js, as "three" and "three/addons/".
  *
- * Attributes: `src`, the export's JSON; `camera`, what is seen and from where ("body", "upper", "face"; "three-quarter", "front", "left",
- * "right", "back"); `background`, a colour, without it the page shows through; `floor`, a colour; `controls`, dragging turns the camera;
- * `paused`; `seed`; `idle="off"`, only what is asked for happens; `mood`, a name. Events: `load`, `error` (its `detail` is the Error),
- * and `begin` and `end` of what is performed and said, as `Character.events` tells them, in `detail`.
+ * Attributes: `src`, the export's JSON; `avatar`, a VRM or another GLB of a humanoid that is shown instead of its character; `camera`,
+ * what is seen and from where ("body", "upper", "face"; "three-quarter", "front", "left", "right", "back"); `background`, a colour,
+ * without it the page shows through; `floor`, a colour; `controls`, dragging turns the camera; `paused`; `seed`; `idle="off"`, only what
+ * is asked for happens; `mood`, a name. Events: `load`, `error` (its `detail` is the Error), `avatar` when another look was put on or
+ * taken off, and `begin` and `end` of what is performed and said, as `Character.events` tells them, in `detail`.
  */
 
 import { load } from "./graph.js";
 import { Sounds } from "./sounds.js";
-import { Stage } from "./stage.js";
+import { Stage, readGlb } from "./stage.js";
 import { StreamedVoice } from "./streamed_voice.js";
 import { Talk } from "./talk.js";
 import { MetagraphObject } from "./three.js";
@@ -24,10 +25,10 @@ const PREPARING = 2; // milliseconds of a frame for motions that may play later
 
 const loaded = new Map(); // address -> what lies there: characters of one export share it
 
-async function fetched(url) {
+async function fetched(url, remedy = "Export again, and keep its files together.") {
   const answer = await fetch(url).catch(() => null);
   if (!answer) throw new Error(`${url} cannot be fetched.\nServe this folder: python3 -m http.server, then open the address it tells.`);
-  if (!answer.ok) throw new Error(`${url} is not there (${answer.status}).\nExport again, and keep its files together.`);
+  if (!answer.ok) throw new Error(`${url} is not there (${answer.status}).\n${remedy}`);
   return answer;
 }
 
@@ -46,7 +47,7 @@ async function exported(url) {
 }
 
 export class MetagraphCharacter extends HTMLElement {
-  static observedAttributes = ["src", "camera", "background", "floor", "controls", "paused"];
+  static observedAttributes = ["src", "avatar", "camera", "background", "floor", "controls", "paused"];
 
   constructor() {
     super();
@@ -57,6 +58,7 @@ export class MetagraphCharacter extends HTMLElement {
     /** The MetagraphObject, once it is loaded. @type {MetagraphObject | null} */
     this.object = null;
     this.sounds = null;
+    this.coming = null; // the look that is loaded
     this.waiting = []; // asked for before it was loaded
     this.talk = null; // what it says, with gestures
     this.early = 0;
@@ -93,6 +95,7 @@ export class MetagraphCharacter extends HTMLElement {
   attributeChangedCallback(name, before, value) {
     if (!this.seen || before === value) return; // what it has when it comes into the page is read then
     if (name === "src") this.open(value);
+    else if (name === "avatar") this.change();
     else if (name === "camera") this.stage?.view(value ?? "");
     else if (name === "controls") this.stage?.turning(value !== null);
     else if (name !== "paused") this.paint();
@@ -123,6 +126,7 @@ export class MetagraphCharacter extends HTMLElement {
       this.canvas.replaceWith(fresh);
       this.canvas = fresh;
       const stage = (this.stage = new Stage(this.canvas, this.hasAttribute("controls"))); // while the files come
+      this.change(); // its files come at the same time
       const { bytes, data, graph: read } = await loaded.get(url.href);
       if (this.opening !== opening) return; // and the stage was given back
       const chain = data.rig?.chain ?? [];
@@ -134,6 +138,8 @@ export class MetagraphCharacter extends HTMLElement {
       const graph = read(); // which says best what is wrong
       if (shown.error) throw shown.error;
       const scene = shown;
+      for (let coming = null; coming !== this.coming; ) await (coming = this.coming).catch(() => {}); // what is wrong with it is told below
+      if (this.opening !== opening) return;
       const seed = this.hasAttribute("seed") ? Number(this.getAttribute("seed")) >>> 0 : undefined;
       this.object = new MetagraphObject(graph, scene, { seed, idle: this.getAttribute("idle") !== "off" });
       this.sounds = new Sounds(data.lines ?? {}, url);
@@ -142,7 +148,9 @@ export class MetagraphCharacter extends HTMLElement {
       if (this.hasAttribute("mood")) this.object.ask({ do: "mood", mood: this.getAttribute("mood") });
       if (!this.hasAttribute("aria-label")) this.canvas.setAttribute("aria-label", graph.name);
       for (const request of this.waiting.splice(0)) this.object.ask(request);
-      this.tell(graph.problems.join(" · "));
+      await this.wear(this.coming);
+      if (this.opening !== opening) return;
+      stage.view(this.getAttribute("camera") ?? "");
       this.step(performance.now());
       this.pending = false;
       this.settle.resolve(this);
@@ -156,6 +164,47 @@ export class MetagraphCharacter extends HTMLElement {
       this.settle.reject(error);
       this.dispatchEvent(new CustomEvent("error", { detail: error }));
     }
+  }
+
+  /** Load the look that the attribute names: its scene, and what moves it; null for the export's own. */
+  async look() {
+    const address = this.getAttribute("avatar");
+    if (!address) return null;
+    const url = new URL(address, document.baseURI);
+    const [{ Avatar }, answer] = await Promise.all([import("./avatar.js"), fetched(url, "Check the address of the avatar.")]);
+    const gltf = await readGlb(await answer.arrayBuffer(), /^http/.test(url.protocol) ? new URL(".", url).href : "").catch((error) => {
+      throw new Error(`The avatar cannot be used: ${error.message}`);
+    });
+    return { Avatar, gltf };
+  }
+
+  /** Change the look to the one that the attribute names now. */
+  change() {
+    const coming = (this.coming = this.look());
+    coming.catch(() => {}); // told where it is put on
+    if (this.object) this.wear(coming);
+  }
+
+  /** Put a look on once it is there, unless another has been asked for since. The motion goes on. */
+  async wear(coming) {
+    const { object } = this;
+    let avatar = null;
+    try {
+      const found = await coming;
+      if (this.object !== object || this.coming !== coming) return;
+      this.tell(object.character.graph.problems.join(" · "));
+      if (!found && !object.avatar) return;
+      if (found) avatar = new found.Avatar(object.character.graph, found.gltf);
+    } catch (error) {
+      if (this.object !== object || this.coming !== coming) return;
+      console.error(error);
+      this.tell(error.message);
+      this.dispatchEvent(new CustomEvent("error", { detail: error }));
+      return;
+    }
+    this.stage.wear(avatar);
+    object.avatar = avatar;
+    this.dispatchEvent(new CustomEvent("avatar", { detail: { avatar, missing: object.missing } }));
   }
 
   tell(words, wrong = false) {
@@ -179,6 +228,16 @@ export class MetagraphCharacter extends HTMLElement {
     if (first) performance.mark("first pose");
     else this.character.graph.prepare(PREPARING);
     this.dispatchEvent(new CustomEvent("frame", { detail: delta }));
+  }
+
+  /** The address of the look that is shown instead of the export's own character, null for that. */
+  get avatar() {
+    return this.getAttribute("avatar");
+  }
+
+  set avatar(address) {
+    if (address) this.setAttribute("avatar", address);
+    else this.removeAttribute("avatar");
   }
 
   get paused() {

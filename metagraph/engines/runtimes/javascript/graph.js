@@ -94,6 +94,9 @@ export class Graph {
     if (this.baseRotations.length !== 4 * this.joints.length || this.baseTranslations.length !== 3 * this.joints.length) {
       throw new Error(`the base pose is not one of ${this.joints.length} joints`);
     }
+    this.restRotations = Float32Array.from(data.joints.flatMap((joint) => joint.rotation ?? [0, 0, 0, 1])); // [J, 4], local, of the rest pose
+    this.restTranslations = Float32Array.from(data.joints.flatMap((joint) => joint.translation ?? [0, 0, 0])); // [J, 3]
+    this.roles = data.roles ?? {}; // role -> joint, where the user corrected it
     this.life = readLife(data.life);
     this.points = new Map(Object.entries(data.points ?? {}));
     this.lines = new Map(Object.entries(data.lines ?? {}));

@@ -5,7 +5,7 @@
  */
 
 import { ease } from "./life/gaze.js";
-import { Enlivener } from "./life/evaluate.js";
+import { Enlivener, SHOWN } from "./life/evaluate.js";
 import { touch } from "./contacts.js";
 import { turnExtent } from "./mood.js";
 import { seamLeft } from "./cue_times.js";
@@ -13,6 +13,8 @@ import { clipSeconds } from "./plan.js";
 import { multiply, nlerp, normalize, power } from "./rotation.js";
 import { Swaying } from "./weight.js";
 import { LAYERS } from "./words.js";
+
+const UNSHOWN = new Float64Array(SHOWN.length);
 
 /** Room for working in, one for each graph: a pose is worked out whole before the next is begun. */
 class Room {
@@ -97,13 +99,26 @@ export class Player {
       if (rest) addLoopedMorphs(rest, time, 1 - weight, out);
     }
     if (alive && this.lives && this.graph.body.face.morphs.length) {
-      const { pose, life } = this.room;
-      this.compose(time); // eyes made of morph targets hold while the head moves
-      this.weigh(time);
-      life.find(pose.rotations, pose.translations, this.plan, this.gaze, time);
-      life.morphs(out, this.plan, time, cues);
+      this.enliven(time);
+      this.room.life.morphs(out, this.plan, time, cues);
     }
     for (let n = 0; n < out.length; n++) out[n] = Math.min(1, Math.max(0, out[n]));
+  }
+
+  /** Return how far each of `SHOWN` (life/evaluate.js) is shown at a time, for faces other than the graph's; zeros without life. */
+  channels(time) {
+    if (!this.lives) return UNSHOWN;
+    this.enliven(time);
+    const cues = LAYERS.map((name, n) => this.cueAt(n, this.plan.layers[name], time)).filter(Boolean);
+    return this.room.life.work(this.plan, time, cues);
+  }
+
+  /** Find what the life layers do at a time, on the pose composed for it. */
+  enliven(time) {
+    const { pose, life } = this.room;
+    this.compose(time); // eyes made of morph targets hold while the head moves
+    this.weigh(time);
+    life.find(pose.rotations, pose.translations, this.plan, this.gaze, time);
   }
 
   /** Return what plays at a time: of each layer its name, plan, cue with motion or null, and the place of its rest. */

@@ -26,6 +26,8 @@ export class Stage {
     this.target = new Vector3(0, 0.9, 0);
     this.bounds = null;
     this.head = null;
+    this.own = null; // bounds and head of what was added
+    this.worn = null; // another look's scene
     this.framed = "";
     this.pointer = null;
     this.ray = new Raycaster();
@@ -126,17 +128,14 @@ export class Stage {
 
   /** Add a GLB; return its scene. @param {ArrayBuffer} bytes @param {string} [head] name of the head's node */
   async add(bytes, head = "") {
-    const loader = new GLTFLoader();
-    loader.register(unanimated);
-    loader.setMeshoptDecoder(MeshoptDecoder);
-    const { scene } = await loader.parseAsync(bytes, "");
+    const { scene } = await readGlb(bytes);
     let drawn = false;
     const meshes = new Map(); // by what their vertices are: parts of different materials share them
     scene.traverse((object) => {
       if ((object.userData.name ?? object.name) === head) this.head = object;
       if (!object.isMesh) return;
-      drawn = object.castShadow = object.receiveShadow = true;
-      object.frustumCulled = false; // its bounds are those of the rest pose
+      drawn = true;
+      castShadows(object);
       meshes.set(object.geometry.attributes.position, object);
     });
     this.scene.add(scene);
@@ -150,8 +149,29 @@ export class Stage {
     for (const mesh of meshes.values()) bounds.union(new Box3().setFromBufferAttribute(mesh.geometry.attributes.position).applyMatrix4(mesh.matrixWorld));
     this.filled = true;
     if (drawn && bounds.max.y - bounds.min.y > 0.1) this.bounds = bounds;
+    this.own = { bounds: this.bounds, head: this.head };
     this.view(this.framed);
     return scene;
+  }
+
+  /** Show another look in place of what was added, null for that, and give back the one before. @param {import("./avatar.js").Avatar | null} avatar */
+  wear(avatar) {
+    if (this.worn) {
+      this.scene.remove(this.worn);
+      release(this.worn);
+    }
+    this.worn = avatar?.scene ?? null;
+    if (this.bones) this.bones.visible = !avatar;
+    Object.assign(this, this.own);
+    if (avatar) {
+      avatar.scene.traverse((object) => object.isMesh && castShadows(object));
+      this.scene.add(avatar.scene);
+      this.head = avatar.head;
+      avatar.scene.updateMatrixWorld(true);
+      const bounds = new Box3().setFromObject(avatar.scene, true); // as it stands at rest
+      if (bounds.max.y - bounds.min.y > 0.1) this.bounds = bounds;
+    }
+    if (!this.controls) this.view(this.framed);
   }
 
   /** Return the point the pointer is at, a way ahead of the character; null where it is elsewhere. @returns {number[] | null} */
@@ -177,17 +197,38 @@ export class Stage {
   dispose() {
     this.sizes.disconnect();
     this.controls?.dispose();
-    this.scene.traverse((object) => {
-      object.geometry?.dispose();
-      for (const material of [object.material ?? []].flat()) {
-        material.map?.dispose();
-        material.dispose();
-      }
-      object.skeleton?.dispose();
-    });
+    release(this.scene);
     this.renderer.dispose();
     this.renderer.forceContextLoss();
   }
+}
+
+/**
+ * Read a GLB, or a glTF. @param {ArrayBuffer} bytes @param {string} [folder] address of what lies beside it
+ * @returns {Promise<{scene: import("three").Group, parser: object}>}
+ */
+export function readGlb(bytes, folder = "") {
+  const loader = new GLTFLoader();
+  loader.register(unanimated);
+  loader.setMeshoptDecoder(MeshoptDecoder);
+  return loader.parseAsync(bytes, folder);
+}
+
+function castShadows(mesh) {
+  mesh.castShadow = mesh.receiveShadow = true;
+  mesh.frustumCulled = false; // its bounds are those of the rest pose
+}
+
+/** Give back what the graphics card holds of objects. */
+function release(objects) {
+  objects.traverse((object) => {
+    object.geometry?.dispose();
+    for (const material of [object.material ?? []].flat()) {
+      for (const value of Object.values(material)) if (value?.isTexture) value.dispose();
+      material.dispose();
+    }
+    object.skeleton?.dispose();
+  });
 }
 
 /** Leave out the animations of a GLB, which the character plays by itself: thousands of tracks that take long to make. */

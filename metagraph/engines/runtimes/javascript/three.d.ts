@@ -1,11 +1,14 @@
+import type { Avatar } from "./avatar.js";
 import type { Answer, Ask, Character, CharacterOptions, Graph, Happening } from "./index.js";
 
 /** A character that moves the bones and morph targets of a scene that three.js loaded. */
 export class MetagraphObject {
   /** `scene`: an Object3D, such as GLTFLoader makes of the export's GLB. */
-  constructor(graph: Graph, scene: { traverse(callback: (object: any) => void): void }, options?: CharacterOptions);
+  constructor(graph: Graph, scene: { traverse(callback: (object: any) => void): void }, options?: CharacterOptions & { avatar?: Avatar | null });
   readonly character: Character;
-  /** Joints and morph targets that the scene lacks. */
+  /** The look that is moved instead of the scene, which is hidden then; null for the scene. Setting it does not change the motion. */
+  avatar: Avatar | null;
+  /** Joints and morph targets that the scene lacks, or that move nothing of the avatar. */
   readonly missing: readonly string[];
   ask(request: Ask): string;
   /** Say a line whose sound comes in, as `Character.saySound`. */

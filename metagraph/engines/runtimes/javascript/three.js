@@ -6,26 +6,48 @@ export class MetagraphObject {
   /**
    * @param {import("./graph.js").Graph} graph @param {import("three").Object3D} scene what GLTFLoader made of the export's GLB (or of any
    *   character with joints of the same names); for several characters a clone each, by SkeletonUtils.clone
-   * @param {object} [options] as for a Character
+   * @param {object} [options] as for a Character; `avatar`: an Avatar (avatar.js) that is moved instead, the scene is hidden
    */
-  constructor(graph, scene, options) {
+  constructor(graph, scene, { avatar = null, ...options } = {}) {
     this.character = new Character(graph, options);
     this.scene = scene;
+    const missing = []; // of the scene
     const { bones, faces } = find(scene);
-    /** Joints and morph targets that the scene lacks; the others move all the same. */
-    this.missing = [];
     this.joints = [];
     graph.joints.forEach((name, joint) => {
       const bone = bones.get(name) ?? bones.get(sanitized(name));
       if (bone) this.joints.push({ bone, joint });
-      else this.missing.push(name);
+      else missing.push(name);
     });
     this.targets = graph.morphs.flatMap((name, place) => {
       const found = faces.filter((mesh) => name in mesh.morphTargetDictionary);
-      if (!found.length) this.missing.push(name);
+      if (!found.length) missing.push(name);
       return found.map((mesh) => ({ influences: mesh.morphTargetInfluences, target: mesh.morphTargetDictionary[name], place }));
     });
+    this.lacking = missing;
     this.time = 0;
+    this.worn = null;
+    this.avatar = avatar;
+  }
+
+  /** The look that is moved instead of the scene, null for the scene. The motion goes on where it is. */
+  get avatar() {
+    return this.worn;
+  }
+
+  /** @param {import("./avatar.js").Avatar | null} avatar */
+  set avatar(avatar) {
+    if (this.worn) this.worn.scene.visible = false;
+    if (avatar || this.worn) this.scene.visible = !avatar;
+    this.worn = avatar;
+    if (!avatar) return;
+    avatar.scene.visible = true;
+    avatar.pose(this.character);
+  }
+
+  /** Joints and morph targets that the scene lacks, or that move nothing of the avatar; the others move all the same. */
+  get missing() {
+    return this.worn?.missing ?? this.lacking;
   }
 
   /** As of a Character: the request's id. @param {object} request */
@@ -51,6 +73,7 @@ export class MetagraphObject {
     const { character, joints, targets } = this;
     if (delta > 0) this.time += delta;
     character.update(this.time);
+    if (this.worn) return this.worn.pose(character);
     const { rotations, translations } = character.pose();
     for (let n = 0; n < joints.length; n++) {
       const { bone, joint } = joints[n];

@@ -24,10 +24,10 @@ const MORPH_WIDE = 0.6; // of a target that opens wide, for a lid as far open as
 const BLINK = LIDS.length; // place among CHANNELS
 const VISEME = CHANNELS.length - 14; // place of the first mouth shape but silence
 
-// What morph targets stand for, in the order in which `morphs` works it out.
 const FEELS = ["smile", "frown", "brow_down", "brow_up", "brows", "cheeks"];
 const SIDED = ["blink", "wide", "look_left", "look_right", "look_up", "look_down"];
-const SHOWN = ["blink", ...["left", "right"].flatMap((side) => SIDED.map((what) => `${what}_${side}`)), ...MOUTH, ...FEELS];
+/** What morph targets stand for, in the order in which `work` works it out. */
+export const SHOWN = ["blink", ...["left", "right"].flatMap((side) => SIDED.map((what) => `${what}_${side}`)), ...MOUTH, ...FEELS];
 const UNMOVED = new Bearing();
 
 /** What the life layers make of one body: `find` works a time out, `apply` and `morphs` use what it found. */
@@ -167,7 +167,19 @@ export class Enlivener {
    * @param {Float32Array} out @param {import("../plan.js").Plan} plan @param {number} time @param {object[]} cues those that play then
    */
   morphs(out, plan, time, cues) {
-    const { shut, channels, values, added } = this;
+    const { added } = this;
+    const values = this.work(plan, time, cues);
+    added.fill(0);
+    for (let n = 0; n < this.targets.length; n++) {
+      const { value, morph, weight } = this.targets[n];
+      if (values[value] > 1e-4) added[morph] += values[value] * weight;
+    }
+    for (let n = 0; n < added.length; n++) out[n] += Math.min(1, added[n]) * (1 - Math.min(1, Math.max(0, out[n])));
+  }
+
+  /** Return how far each of SHOWN is shown, of what was found; its own array. */
+  work(plan, time, cues) {
+    const { shut, channels, values } = this;
     values[0] = Math.max((shut[0] + shut[1]) / 2, channels[BLINK]);
     for (let side = 0; side < 2; side++) {
       const left = this.solver.eyes[2 * side] / MORPH_LOOK, up = this.solver.eyes[2 * side + 1] / MORPH_LOOK;
@@ -186,12 +198,7 @@ export class Enlivener {
     for (const cue of cues) answer(face, life, cue.action.tags, cue.start, cue.end, time);
     settle(face);
     values.set([face.smile, face.frown, face.browDown, face.browUp, face.brows, face.cheeks], 13 + MOUTH.length);
-    added.fill(0);
-    for (let n = 0; n < this.targets.length; n++) {
-      const { value, morph, weight } = this.targets[n];
-      if (values[value] > 1e-4) added[morph] += values[value] * weight;
-    }
-    for (let n = 0; n < added.length; n++) out[n] += Math.min(1, added[n]) * (1 - Math.min(1, Math.max(0, out[n])));
+    return values;
   }
 }
 
