@@ -98,6 +98,13 @@ def _gathered(
             "Keep to one layout.",
         )
     count = counts.pop()
+    if count not in BY_COUNT:
+        raise FileError(
+            path,
+            f"people have {count} points, which no known layout has",
+            "in its frames",
+            f"Known are {', '.join(f'{n} ({name})' for n, name in sorted(BY_COUNT.items()))}.",
+        )
     scale = np.ones(3) if deep else _stretch(people, picture, notes)
     middle = picture[0] / 2 if picture and not deep else None
     points, confidence = np.zeros((len(frames), count, 3)), np.zeros((len(frames), count))

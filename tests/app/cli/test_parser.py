@@ -111,7 +111,7 @@ def test_wrong_usage_is_exit_code_2_with_a_hint(
     ("arguments", "words"),
     [
         (["check", "none.metagraph.yaml"], "none.metagraph.yaml, on opening it: cannot be read"),
-        (["none.metagraph.yaml"], "there is no such project"),
+        (["none.metagraph.yaml"], "there is no such file. Give a project"),
         (["info", "none.glb"], "none.glb"),
         (["plan", SAMPLE, "-s", "0"], "more than 0"),
         (["plan", SAMPLE, "-s", "nan"], "more than 0"),
@@ -399,7 +399,7 @@ def test_a_window_without_a_screen_is_the_demo_with_its_usual_options(
     monkeypatch.setattr(demo_command, "run", run_demo)
     monkeypatch.setattr(window_command, "has_screen", lambda: False)
     monkeypatch.delenv("QT_QPA_PLATFORM", raising=False)
-    assert window_command.run(Namespace(project=small, json=True, sample=False, clip=None)) == 0
+    assert window_command.run(Namespace(paths=[small], json=True, sample=False, clip=None)) == 0
     assert asked[0].seconds == 60.0 and asked[0].out == Path("out")
 
 

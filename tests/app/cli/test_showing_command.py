@@ -28,7 +28,7 @@ def test_what_only_an_actions_own_turn_shows_opens_the_window_on_its_clip(toy: A
     seen = Problem("warning", "play-fast", "", "", "arms", action=toy.id(project, "rest long"))
     words = shlex.split(name_showing_command(project, seen, PATH))
     options = _parser(words[1]).parse_args(words[1:])
-    assert (words[1], options.clip, str(options.project)) == ("window", "rest long", str(PATH))
+    assert (words[1], options.clip, list(map(str, options.paths))) == ("window", "rest long", [str(PATH)])
 
 
 def test_what_was_not_seen_playing_names_no_command(toy: Any) -> None:

@@ -534,7 +534,7 @@ def test_importing_nothing_says_what_clips_are(desk, tmp_path, qtbot):
     desk.importing.import_paths([str(tmp_path / "empty")])
     qtbot.waitUntil(lambda: bool(desk.reports))
     assert desk.reports[0][0] == "Nothing was imported"
-    assert "BVH" in desk.reports[0][1][0]
+    assert ".bvh" in desk.reports[0][1][0]
 
 
 def test_importing_again_refreshes_in_place(desk, clips, qtbot):
