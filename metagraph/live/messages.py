@@ -15,7 +15,6 @@ from msgspec import UNSET, Meta, Struct, UnsetType
 from metagraph.common.field_errors import explain_validation
 from metagraph.graph import requests as a
 from metagraph.graph.words import LAYERS, Layer
-from metagraph.live.engine_timings import adopt_engine_timing
 
 LONGEST = 64 * 1024  # bytes of one request
 LONGEST_BML = 256 * 1024  # bytes of a request with a block of BML
@@ -268,7 +267,7 @@ def read_live_request(data: bytes | str | msgspec.Raw) -> HeardMessage | Reply:
         return _otherwise(data, error, None)
     except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
         return Reply(error=a.explain_invalid_ask(error))
-    if isinstance(message, a.Say) and (message.words or message.visemes):
+    if isinstance(message, a.Say) and (message.visemes or any(isinstance(x, dict) for x in message.words)):
         return _otherwise(data, msgspec.ValidationError(), message)
     return HeardMessage(message)
 
@@ -291,7 +290,11 @@ def _otherwise(
     if not isinstance(fields, dict):
         return Reply(error='a request is an object such as {"do": "nod"}')
     ident = fields["id"] if isinstance(fields.get("id"), str) and len(fields["id"]) <= 200 else None
-    changed = fields.get("do") == "say" and adopt_engine_timing(fields)
+    changed = False
+    if fields.get("do") == "say":  # what knows phones and mouth shapes is loaded when somebody sends some
+        from metagraph.live.engine_timings import adopt_engine_timing
+
+        changed = adopt_engine_timing(fields)
     later = "in" in fields
     after = fields.pop("in", 0.0)
     if isinstance(after, bool) or not isinstance(after, int | float) or not 0 <= after <= 1e6:

@@ -190,8 +190,10 @@ def list_mouth_pieces(grid: TextGrid) -> list[MouthPiece]:
     if tiers:
         phones = tiers[0]
         arpabet = is_arpabet(i.text for i in phones.intervals)
-        bare = drop_tones(i.text for i in phones.intervals)
-        return [p for i in _in_turn(phones) for p in _spread(i, *find_visemes(bare[i.text], arpabet))]
+        labels = [i.text for i in phones.intervals]
+        bare = {} if arpabet else drop_tones(labels)  # digits of ARPAbet are stress
+        found = [(i, bare.get(i.text, i.text)) for i in _in_turn(phones)]
+        return [p for i, label in found for p in _spread(i, *find_visemes(label, arpabet))]
     words = _pick(_speaking(grid), _NAMED_WORDS, short=False)
     return [p for i in _in_turn(words[0]) for p in _spell(i)] if words else []
 

@@ -13,7 +13,6 @@ from PySide6.QtCore import QSettings, Qt, Signal
 from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import (
     QCheckBox,
-    QComboBox,
     QDialog,
     QDialogButtonBox,
     QFileDialog,
@@ -44,6 +43,7 @@ from app.translation import group_thousands, make_lazy_texts, tr, tr_context, tr
 from app.widgets.act_strip import ActStrip, format_clock
 from app.widgets.form_fields import Seconds
 from app.widgets.making import make_widget
+from app.widgets.quiet_fields import ComboBox
 from metagraph.common.studio import find_start_folder
 from metagraph.formats.elan import read_elan
 from metagraph.graph.model import LAYERS, Layer
@@ -252,7 +252,7 @@ class AnnotateDialog(QDialog):
     def _add_annotators(self, layout: QVBoxLayout) -> None:
         """Offer a choice of who annotated, if several people annotated the same."""
         names = self.reading.annotators
-        self.annotator = QComboBox(self)
+        self.annotator = ComboBox(self)
         self.annotator.setAccessibleName(tr("Annotator"))
         for name in names:
             self.annotator.addItem(name or tr("No name"), name)
