@@ -8,6 +8,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from app.project.given_files import sort_paths
+from metagraph.errors import FileError
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -29,6 +30,13 @@ def has_screen() -> bool:
 def run(options: Namespace) -> int:
     project, clips = sort_paths(options.paths)
     if not has_screen() and os.environ.get("QT_QPA_PLATFORM") is None:
+        if clips:
+            raise FileError(
+                clips[0],
+                "there is no screen to open a window on",
+                "while opening it",
+                f"Label clips without a window: metagraph label {clips[0]}",
+            )
         if not options.json:
             print("There is no screen, so Metagraph runs the demo without a window.\n")
         from app.cli import demo_command

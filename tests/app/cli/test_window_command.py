@@ -45,3 +45,13 @@ def test_a_project_is_saved_as_often_as_the_user_wants(
     assert main([*command, *([str(path)] if given else [])]) == 0
     assert read_project(path).settings.seed == 9
     assert read_project(path.with_name(f"{path.name}.1")).settings.seed == 8
+
+
+def test_clips_without_a_screen_are_refused_with_what_to_do(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Else the demo of the sample would run, and nobody would see what became of the clips."""
+    monkeypatch.setattr(window_command, "has_screen", lambda: False)
+    monkeypatch.delenv("QT_QPA_PLATFORM", raising=False)
+    assert main([str(tmp_path)]) == 1
+    assert f"metagraph label {tmp_path}" in capsys.readouterr().err
