@@ -240,7 +240,7 @@ def _facts(options: Namespace, seen: KeypointTrack) -> dict[str, Any]:
         "keypoints": _name_source(options),
         "seconds": round(seen.seconds, 3),
         "frames": len(seen),
-        "dimensions": seen.dims,
+        "dimensions": seen.judged.dims,
         "mirrored": not options.no_mirror,
     }
 
@@ -249,9 +249,8 @@ def _lines(
     options: Namespace, seen: KeypointTrack, rows: list[dict[str, Any]], written: list[str]
 ) -> list[str]:
     how = "as in a mirror" if not options.no_mirror else "left as left"
-    out = [
-        f"{_name_source(options)}: {len(seen)} frames, {seen.seconds:.1f} s, {seen.dims} dimensions, {how}"
-    ]
+    deep = "with depth" if seen.judged.dims == 3 else "without depth"
+    out = [f"{_name_source(options)}: {len(seen)} frames, {seen.seconds:.1f} s, {deep}, {how}"]
     for row in rows:
         when = (
             f"goes there {row['goes']:.2f} s to {row['there']:.2f} s"

@@ -95,6 +95,11 @@ class KeypointTrack:
         return len(self.times)
 
     @property
+    def judged(self) -> KeypointTrack:
+        """Return the points in which stances are looked for: those in the picture where depth was guessed."""
+        return self.flat if self.flat is not None else self
+
+    @property
     def seconds(self) -> float:
         """When the last frame is."""
         return float(self.times[-1]) if len(self) else 0.0

@@ -49,8 +49,7 @@ def mimic_performance(
     """
     if not len(keypoints):
         raise ValueError("there is nobody in the keypoints to mimic")
-    if keypoints.flat is not None:
-        keypoints = keypoints.flat
+    keypoints = keypoints.judged
     into = into or Performance(name="Mimicry", length=round(keypoints.seconds + REST, 3))
     mimic = Mimic(project, mirror, layers, gaze, prefix=_prefix(into.asks))
     asks = [ask for some in _steps(project, keypoints, mimic, into, progress) for ask in some]

@@ -58,7 +58,7 @@ class MimicDialog(QDialog):
         self.setWindowTitle(tr("Mimic a person"))
         self.setMinimumWidth(480)
         layout = QVBoxLayout(self)
-        flat = (keypoints.flat or keypoints).dims == 2
+        flat = keypoints.judged.dims == 2
         deep = tr("without depth") if flat else tr("with depth")
         frames = tr_plural("{count:,} frame", "{count:,} frames", len(keypoints))
         facts = QLabel(f"{name}: {frames}, {format_number(keypoints.seconds, '.1f')} s, {deep}", self)

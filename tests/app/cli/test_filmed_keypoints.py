@@ -32,6 +32,7 @@ def test_a_video_is_mimicked_and_its_keypoints_and_its_take_are_written(
     assert main(["mimic", str(SAMPLE), str(film), *words]) == 0
     said = json.loads(capsys.readouterr().out)
     assert "on hips" in {row["name"] for row in said["seen"]}
+    assert said["dimensions"] == 2, "stances are looked for in the picture, as the window says"
     assert said["frames"] == 100 and said["seconds"] == 9.9 and "its sound is not used" in said["notes"]
     assert read_clips(take)[0].frames > 90
     assert main(["mimic", str(SAMPLE), str(saved), "--no-mirror", "--json"]) == 0
