@@ -189,7 +189,7 @@ def describe_doubts(reading: AnnotationReading) -> list[str]:
             tr(
                 "Several annotators: {read} is read. Not read: {tiers}. You can choose another annotator, or "
                 "measure their agreement with 'metagraph study agreement'.",
-                read=first or tr("the first"),
+                read=first or tr("the one without a name"),
                 tiers=list_in_words([one.tier for one in reading.again]),
             )
         )
