@@ -11,7 +11,6 @@ import hashlib
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -39,7 +38,15 @@ from metagraph.formats.fbx.processes import batch
 from metagraph.formats.motion_cache import read_or_kept
 from metagraph.formats.new_file import Access
 from metagraph.formats.project.data import FORMAT, from_data, to_data
-from metagraph.formats.project.fields import Data, DataError, UnknownFieldError
+from metagraph.formats.project.fields import Data, DataError
+from metagraph.formats.project.newer import (
+    HEAD,
+    ONLY_LOOKED_AT,
+    find_newer_version,
+    make_newer_error,
+    read_known_part,
+    refuse_newer_file,
+)
 from metagraph.formats.project.text import TextError, as_text, read_text_data, to_text
 from metagraph.graph.clip_source import get_source_clip, with_changed_file, with_source
 from metagraph.graph.conversation.model import Conversation, Side
@@ -53,8 +60,6 @@ from metagraph.motion.joint_map import RetargetError
 
 SUFFIX = ".metagraph.yaml"
 SEARCHED = 20_000  # files looked at when clips have moved
-MOST_UNKNOWN = 1000  # fields of a newer format that are left out
-_VERSION = re.compile(rb"^\s*\{?\s*\"?metagraph\"?\s*:\s*(\d{1,9})\b", re.MULTILINE)
 _CONFLICT = re.compile(r"^<{7} ", re.MULTILINE)
 COMPARED = 2 << 30  # bytes of those files that are compared by content
 
@@ -108,11 +113,11 @@ def parse_project(text: str, path: Path, notes: list[str] | None = None, to_look
             phrase("Undo the last change made by hand, or restore a backup."),
         ) from None
     try:
-        if to_look_at and (version := _newer_format(data)) is not None:
+        if to_look_at and (version := find_newer_version(text[:HEAD].encode())) is not None:
             try:
-                return _closed_below(_known_part({**deepcopy(data), "metagraph": FORMAT}, notes), path.parent)
+                return _closed_below(read_known_part(data, notes), path.parent)
             except DataError:
-                raise _written_by_newer(path, version) from None
+                raise make_newer_error(path, version) from None
         return _closed_below(from_data(_upgraded(data, path), notes), path.parent)
     except DataError as error:
         cause = f"{error.where} {error}".strip()
@@ -128,76 +133,11 @@ def _upgraded(data: Any, path: Path) -> Any:
     if not isinstance(version, int) or isinstance(version, bool) or version < 1:
         raise DataError("metagraph", "should be the version of the format, a whole number from 1")
     if version > FORMAT:
-        raise _written_by_newer(path, version)
+        raise make_newer_error(path, version)
     while version < FORMAT:
         data = {**UPGRADES[version](dict(data)), "metagraph": version + 1}
         version += 1
     return data
-
-
-def _known_part(data: Data, notes: list[str] | None) -> Project:
-    """Return the project in the data of a newer format, without the fields that are not known here; a note
-    names them. Raises DataError for what cannot be read for another reason.
-    """
-    left_out: list[str] = []
-    while True:
-        repairs: list[str] | None = None if notes is None else []
-        try:
-            project = from_data(data, repairs)
-        except UnknownFieldError as error:
-            if len(left_out) >= MOST_UNKNOWN:
-                raise
-            left_out.append(error.where)
-            _drop_field(data, error.where)
-            continue
-        if notes is not None:
-            names = ", ".join(left_out[:5]) + (" …" if len(left_out) > 5 else "")
-            notes += [phrase("not known here: {names}", names=names)] if names else []
-            notes += repairs or []
-        return project
-
-
-def _drop_field(data: Any, where: str) -> None:
-    """Remove a field of plain data: "layers.arms.actions[3].name". Raises DataError if it is not there."""
-    *way, last = [
-        name or int(number) for name, number in re.findall(r"([^.\[\]]+)(?=[.\[]|$)|\[(\d+)\]", where)
-    ]
-    try:
-        for step in way:
-            data = data[step]
-        del data[last]
-    except (LookupError, TypeError):
-        raise DataError(where, "cannot be left out") from None
-
-
-def _newer_format(data: Any) -> int | None:
-    """Return the version of a file's format if it is newer than this Metagraph's, else None."""
-    version = data.get("metagraph") if isinstance(data, Mapping) else None
-    return version if type(version) is int and version > FORMAT else None
-
-
-def _written_by_newer(path: Path, version: int) -> FileError:
-    cause = phrase(
-        "was written by a newer Metagraph (format {version}; this one reads up to {FORMAT})",
-        version=version,
-        FORMAT=FORMAT,
-    )
-    return FileError(path, cause, "metagraph", phrase("Update Metagraph."))
-
-
-def _refuse_newer_file(path: Path) -> None:
-    """Raise FileError if the file at a path was written by a newer Metagraph: saving would lose what this one
-    does not know.
-    """
-    try:
-        with path.open("rb") as file:
-            found = _VERSION.search(file.read(4096))
-    except OSError:
-        return  # whoever writes says what is wrong there
-    if found is not None and int(found[1]) > FORMAT:
-        error = _written_by_newer(path, int(found[1]))
-        remedy = phrase("Update Metagraph, or save under another name.")
-        raise FileError(path, error.cause, error.where, remedy)
 
 
 def _line_of(lines: Callable[[], Mapping[str, int]], where: str) -> str:
@@ -233,7 +173,7 @@ def encode_project(project: Project, path: Path) -> bytes:
     """Return the content of a project's file at `path`, after reading it back as a check. Raises
     FileError, also if a newer Metagraph wrote the file that is there.
     """
-    _refuse_newer_file(path)
+    refuse_newer_file(path)
     try:
         text = to_text(with_clip_identity(to_data(project)))
     except DataError as error:
@@ -487,16 +427,9 @@ def open_project(path: str | Path, progress: Callable[[int, int], None] | None =
     notes: list[str] = []
     content = _content(path)
     project, found = _decoded(content, path, notes, True), compute_content_digest(content)
-    written = _VERSION.search(content[:4096])
-    newer = written is not None and int(written[1]) > FORMAT
+    newer = find_newer_version(content) is not None
     if newer:
-        notes.insert(
-            0,
-            phrase(
-                "A newer Metagraph wrote this project, so it can only be looked at, without what this one "
-                "does not know. Update Metagraph to change it."
-            ),
-        )
+        notes.insert(0, ONLY_LOOKED_AT)
     opened = load_motions(project, path.resolve().parent, progress)  # relative paths start at a link's target
     if names := list_closed_paths(opened.project):
         notes.append(describe_closed_paths(names))

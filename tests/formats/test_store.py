@@ -156,11 +156,13 @@ def test_a_file_of_a_newer_version_can_be_looked_at_but_not_replaced(tmp_path: P
     text = text_of(project).replace("metagraph: 2", "metagraph: 3\ngravity: 9.81")
     first = next(iter(project.actions()))
     text = text.replace(f"id: {first.id}", f"id: {first.id}, sparkle: true")
+    text = text.replace("kind: gesture", "kind: gesture, weight_of_two: 3")  # as a new field of each action
     path = tmp_path / "new.metagraph.yaml"
     path.write_text(text, encoding="utf-8")
     opened = open_project(path)
     assert opened.newer and opened.project.graphs == project.graphs
     assert "newer Metagraph" in opened.notes[0] and "gravity" in opened.notes[1]
+    assert opened.notes[1].count("weight_of_two") == 1, "it is dropped everywhere at once"
     with pytest.raises(FileError, match="newer Metagraph") as refusal:
         save_project(opened.project, path)
     assert refusal.value.remedy == "Update Metagraph, or save under another name."
