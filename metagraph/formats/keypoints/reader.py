@@ -37,6 +37,7 @@ from metagraph.formats.keypoints.frames import (
     normalize_key,
     read_frame,
 )
+from metagraph.formats.keypoints.movenet import NOTE, put_x_first, unpack_people
 from metagraph.formats.keypoints.tracks import CUT, make_keypoint_track
 from metagraph.formats.markers.marker_clips import read_marker_track
 from metagraph.mimicry.keypoint_layouts import H36M, POINTS, KeypointTrack
@@ -51,7 +52,9 @@ KEYPOINT_TOOLS = (
     KnownTool("MMPose", "1.x `instance_info`; 17, 26 or 133 points", "all points with their scores"),
     KnownTool("AlphaPose", "COCO's 17, Halpe's 26 or 136; a list of people", "all points with their scores"),
     KnownTool("COCO", "17 keypoints", "all points with their visibility"),
-    KnownTool("TensorFlow (PoseNet, MoveNet)", "named keypoints with scores", "17 points"),
+    KnownTool(
+        "TensorFlow (PoseNet, MoveNet)", "named keypoints with scores; MoveNet's raw y, x, score", "17 points"
+    ),
     KnownTool("Human3.6M", "17 points, where a name tells it", "points of the body"),
 )
 _WHOLE = ("frames", "data", "results", "poses", "predictions", "instance_info")
@@ -103,6 +106,8 @@ def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | No
     if head.h36m:
         for frame in frames:
             frame.flat, frame.space = ([_from_h36m(p) for p in some] for some in (frame.flat, frame.space))
+    elif put_x_first(frames):
+        notes.append(NOTE)
     return make_keypoint_track(path, frames, fps or head.fps, picture or _size(head), notes)
 
 
@@ -195,7 +200,7 @@ def _file(path: Path, head: _Head) -> Iterator[KeypointFrame]:
     if is_person(data) or (data and all(is_person(p) for p in data) and is_json_number(data[0][0])):
         data = [data] if is_person(data) else data
     for n, item in enumerate(data):
-        yield read_frame(path, item, f"frame {n}")
+        yield read_frame(path, unpack_people(item), f"frame {n}")
 
 
 def _lines(path: Path, lines: Sequence[tuple[int, bytes]], head: _Head) -> Iterator[KeypointFrame]:
@@ -209,7 +214,7 @@ def _lines(path: Path, lines: Sequence[tuple[int, bytes]], head: _Head) -> Itera
         if place == 0 and isinstance(item, dict) and not has_people(item):
             _heading(path, item, head)
             continue
-        yield read_frame(path, item, f"line {n}")
+        yield read_frame(path, unpack_people(item), f"line {n}")
 
 
 def _bytes(path: Path) -> bytes:
