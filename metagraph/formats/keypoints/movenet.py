@@ -42,7 +42,7 @@ def _is_multi_pose(one: Any) -> bool:
 
 def put_x_first(frames: Sequence[KeypointFrame]) -> bool:
     """Exchange x and y of flat points where nearly everybody would lie otherwise, take the third number for
-    the confidence where there is one, and return whether that was done. Only shares of a picture with COCO's 17
+    the confidence where there is one, and return whether that was done. Only shares of a picture with 17
     points are looked at: MoveNet gives no other sign.
     """
     people = [p for frame in frames for p in frame.flat]
