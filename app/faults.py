@@ -102,9 +102,14 @@ def forget_faults() -> None:
 
 def format_fault_report() -> str:
     """Return what is known, as text: versions, the names of the last actions, what happened and where."""
+    return "\n".join([*_versions(), "", format_happenings()])
+
+
+def format_happenings() -> str:
+    """Return the names of the last actions, and what went wrong and where, as text."""
     with _lock:
         faults = list(_known.values())
-    lines = [*_versions(), "", "Last actions", *(f"  {a}" for a in _actions or ("none",)), ""]
+    lines = ["Last actions", *(f"  {a}" for a in _actions or ("none",)), ""]
     for fault in faults:
         often = f", {fault.count} times" if fault.count > 1 else ""
         when = time.strftime("%H:%M:%S", time.localtime(fault.when))

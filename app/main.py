@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from app.project.second_start import StartRequest
     from app.shell.window import Window
 
+NAME = "Metagraph"  # of the program and its maker, for settings
 RETRY = 300  # milliseconds between two checks whether the language can change
 QUIET = 5000  # milliseconds after which news may be told: the project opens first
 UNSEEN = 500  # milliseconds; then a project is opened even if nothing was painted: the window may be hidden
@@ -36,9 +37,11 @@ def _application() -> QApplication:
     from app import translation
     from app.features import check_studio_features
     from app.memory import free_memory_early
+    from app.stage.software_drawing import apply_drawing_choice
     from preview.early_driver import load_soon
 
     leave_working_folder()
+    apply_drawing_choice(QSettings(NAME, NAME))
     free_memory_early()
     load_soon()
     # Planning and checking run on threads; the window's own thread must get its turn well within a frame.
@@ -51,8 +54,8 @@ def _application() -> QApplication:
     QSurfaceFormat.setDefaultFormat(surface)
     # A dock that is floated or docked keeps its context.
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
-    QCoreApplication.setApplicationName("Metagraph")
-    QCoreApplication.setOrganizationName("Metagraph")
+    QCoreApplication.setApplicationName(NAME)
+    QCoreApplication.setOrganizationName(NAME)
     app = QApplication(sys.argv[:1])
     app.setWindowIcon(QIcon(str(Path(__file__).parent / "look" / "metagraph.svg")))
     app.setDesktopFileName("metagraph")  # under Wayland the icon is that of the menu entry

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,7 +9,6 @@ from PySide6.QtCore import QObject, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
-    QFileDialog,
     QLabel,
     QPlainTextEdit,
     QVBoxLayout,
@@ -21,9 +19,8 @@ from app import faults
 from app.look.theme import strengthen
 from app.project.autosave import state_folder
 from app.project.document import Document
-from app.translation import tr, tr_error
-from metagraph.errors import FileError
-from metagraph.formats.atomic import write_atomically
+from app.shell.report_saving import save_report
+from app.translation import tr
 
 CHILDREN = 5000  # ms between two checks for what processes have written
 
@@ -141,16 +138,6 @@ class FaultDialog(QDialog):
         self.text.setPlainText(report)
 
     def _save(self) -> None:
-        name = f"metagraph report {time.strftime('%Y-%m-%d %H.%M')}.txt"
-        place, _ = QFileDialog.getSaveFileName(
-            self, tr("Save report"), str(Path.home() / name), tr("Text (*.txt)")
-        )
-        if not place:
-            return
-        try:
-            write_atomically(Path(place), self.text.toPlainText().encode())
-            self.sentence.setText(
-                tr("Saved {name}. Send it to the people who gave you Metagraph.", name=Path(place).name)
-            )
-        except FileError as error:
-            self.sentence.setText(tr_error(error))
+        words = save_report(self, self.text.toPlainText())
+        if words is not None:
+            self.sentence.setText(words)

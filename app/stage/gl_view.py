@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import moderngl
 import numpy as np
-from PySide6.QtCore import QPointF, Qt, Signal
+from PySide6.QtCore import QPointF, QSettings, Qt, Signal
 from PySide6.QtGui import (
     QGuiApplication,
     QImage,
@@ -23,9 +23,10 @@ from PySide6.QtGui import (
     QWheelEvent,
 )
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
-from PySide6.QtWidgets import QLabel, QLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QLayout, QPushButton, QVBoxLayout, QWidget
 
 from app.stage.navigation import Move, get_navigation
+from app.stage.software_drawing import can_choose_software, choose_software, has_software_opengl
 from app.translation import tr, tr_error
 from preview.camera import Camera
 from preview.renderer import Renderer
@@ -33,6 +34,7 @@ from preview.scene import DARK, Scene, SceneTheme
 
 Compose = Callable[[], Scene]
 GL_RENDERER = 0x1F01
+ROOM = 160  # pixels of height from which a button fits below the reason for an empty view
 ZOOMED = 16.0  # notches of the wheel for a drag as long as the view is high
 NOTCH = 4.0  # parts of an angle delta to a pixel, where a touchpad tells none
 _Base: Any = QWidget if TYPE_CHECKING else object
@@ -50,7 +52,7 @@ class CameraMouse(_Base):
         self._last: QPointF | None = None
 
     def _cannot_draw(self, error: Exception) -> None:
-        """Say in the middle of the view why it stays empty, and emit it."""
+        """Say in the middle of the view why it stays empty, and emit it; offer to draw in software."""
         words = QLabel(tr_error(error), self, wordWrap=True, alignment=Qt.AlignmentFlag.AlignCenter)
         words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         words.setAutoFillBackground(True)  # otherwise an OpenGL widget's background is black
@@ -58,8 +60,33 @@ class CameraMouse(_Base):
         words.lower()  # buttons over the view stay visible
         room = QVBoxLayout(self)
         room.setSizeConstraint(QLayout.SizeConstraint.SetNoConstraint)
-        room.addWidget(words)
+        room.addWidget(words, 1)
+        if can_choose_software() and self.height() >= ROOM:
+            words.setAlignment(Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignBottom)
+            room.addWidget(self._make_software_button(words), 0, Qt.AlignmentFlag.AlignHCenter)
+            room.addStretch(1)
         self.failed.emit(words.text())
+
+    def _make_software_button(self, words: QLabel) -> QPushButton:
+        """Return a button that tries the system's software renderer and chooses it for the next start."""
+        button = QPushButton(tr("Draw without the graphics card"), self)
+        button.setMinimumWidth(1)  # a view is as narrow as the user likes
+
+        def choose() -> None:
+            QGuiApplication.setOverrideCursor(Qt.CursorShape.WaitCursor)
+            found = has_software_opengl()
+            QGuiApplication.restoreOverrideCursor()
+            if found:
+                choose_software(QSettings(), True)
+                words.setText(
+                    tr("Close Metagraph and open it again. It then draws without the graphics card.")
+                )
+            else:
+                words.setText(tr("OpenGL 3.3 does not work in software either. {what}", what=words.text()))
+            button.hide()
+
+        button.clicked.connect(choose)
+        return button
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self._last = event.position()
