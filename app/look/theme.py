@@ -140,7 +140,7 @@ def make_style_sheet(look: WindowTheme) -> str:
     Labels, message boxes and tooltips show text as it is: a name from a stranger's file may look like HTML,
     which Qt would show as such, and open the pictures it names. A label for rich text sets its format itself.
     """
-    t, marks = look, MARKS
+    t, marks = look, MARKS.replace("\\", "\\\\").replace('"', '\\"')
     return f"""
     * {{ font-size: {FONT_PIXELS}px; }}
     QLabel[textFormat="AutoText"], QToolTip {{ qproperty-textFormat: PlainText; }}
@@ -181,12 +181,12 @@ def make_style_sheet(look: WindowTheme) -> str:
     QLineEdit:focus, QDoubleSpinBox:focus, QSpinBox:focus, QComboBox:focus {{ border-color: {t.dim}; }}
     QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: 0; border: none; }}
     QComboBox::drop-down {{ border: none; width: 22px; }}
-    QComboBox::down-arrow {{ image: url({marks}/down_{t.name}.svg); width: 12px; height: 12px; }}
+    QComboBox::down-arrow {{ image: url("{marks}/down_{t.name}.svg"); width: 12px; height: 12px; }}
     QCheckBox {{ spacing: 8px; }}
     QCheckBox::indicator, QAbstractItemView::indicator {{ width: 14px; height: 14px; border: 1px solid {t.dim};
         border-radius: 4px; background: {t.field}; }}
-    QCheckBox::indicator:checked, QAbstractItemView::indicator:checked {{ image: url({marks}/check_{t.name}.svg); }}
-    QCheckBox::indicator:indeterminate, QAbstractItemView::indicator:indeterminate {{ image: url({marks}/part_{t.name}.svg); }}
+    QCheckBox::indicator:checked, QAbstractItemView::indicator:checked {{ image: url("{marks}/check_{t.name}.svg"); }}
+    QCheckBox::indicator:indeterminate, QAbstractItemView::indicator:indeterminate {{ image: url("{marks}/part_{t.name}.svg"); }}
     QCheckBox::indicator:disabled, QAbstractItemView::indicator:disabled {{ border-color: {t.line}; }}
     QCheckBox::indicator:focus {{ border-color: {t.text}; }}
     QComboBox QAbstractItemView {{ background: {t.card}; border: 1px solid {t.line}; outline: none; }}
@@ -215,12 +215,12 @@ def make_style_sheet(look: WindowTheme) -> str:
     QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}
     QLabel[title="true"] {{ font-weight: 600; }}
     QFileDialog {{ min-width: 900px; min-height: 560px;
-        filedialog-parent-directory-icon: url({marks}/up_{t.name}.svg);
-        filedialog-new-directory-icon: url({marks}/folder_add_{t.name}.svg);
-        filedialog-listview-icon: url({marks}/grid_{t.name}.svg);
-        filedialog-detailedview-icon: url({marks}/list_{t.name}.svg);
-        backward-icon: url({marks}/back_{t.name}.svg); forward-icon: url({marks}/forth_{t.name}.svg);
-        filedialog-backward-icon: url({marks}/back_{t.name}.svg); }}
+        filedialog-parent-directory-icon: url("{marks}/up_{t.name}.svg");
+        filedialog-new-directory-icon: url("{marks}/folder_add_{t.name}.svg");
+        filedialog-listview-icon: url("{marks}/grid_{t.name}.svg");
+        filedialog-detailedview-icon: url("{marks}/list_{t.name}.svg");
+        backward-icon: url("{marks}/back_{t.name}.svg"); forward-icon: url("{marks}/forth_{t.name}.svg");
+        filedialog-backward-icon: url("{marks}/back_{t.name}.svg"); }}
     QFileDialog QToolButton {{ padding: 3px; min-width: 20px; min-height: 20px; }}
     QFileDialog QTreeView {{ font-size: 14px; }}
     QFileDialog QTreeView::item {{ padding: 4px 0; }}

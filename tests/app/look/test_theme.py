@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-import pytest
-from PySide6.QtGui import QPalette
-from PySide6.QtWidgets import QApplication
+import shutil
+import sys
 
+import pytest
+from PySide6.QtGui import QImage, QPalette
+from PySide6.QtWidgets import QApplication, QCheckBox
+
+from app.look import theme
 from app.look.theme import (
     DARK,
     KIND_MARKS,
@@ -69,3 +73,30 @@ def test_applying_a_theme_reaches_palette_and_style(qapp):
         assert QApplication.palette().color(QPalette.ColorRole.Window).name() == look.panel
         assert qapp.styleSheet() == make_style_sheet(look)
         assert make_palette(look).color(QPalette.ColorRole.PlaceholderText).name() == look.dim
+
+
+@pytest.mark.parametrize("folder", ["Meine Programme – ü", "it's (new) #1; {a}", 'a "quoted" one', "plain"])
+@pytest.mark.parametrize("look", [DARK, LIGHT], ids=lambda look: look.name)
+def test_the_style_works_wherever_metagraph_is_installed(qapp, tmp_path, monkeypatch, folder, look):
+    """A path that cannot be written in a style sheet leaves the whole window without its style."""
+    if sys.platform == "win32" and '"' in folder:
+        pytest.skip("Windows has no such names")
+
+    def draw() -> QImage:
+        box = QCheckBox("x")
+        box.setStyleSheet(make_style_sheet(look))
+        box.setChecked(True)
+        image = box.grab().toImage()
+        box.deleteLater()
+        return image
+
+    usual = draw()
+    place = tmp_path / folder
+    shutil.copytree(theme.MARKS, place)
+    monkeypatch.setattr(theme, "MARKS", place.as_posix())
+    assert draw() == usual
+    blank = shutil.copytree(place, tmp_path / "blank")
+    for mark in blank.glob("*.svg"):
+        mark.write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"/>', encoding="utf-8")
+    monkeypatch.setattr(theme, "MARKS", blank.as_posix())
+    assert draw() != usual, "the mark is drawn from its file"
