@@ -22,7 +22,7 @@ def drop_stance_at(
     project: Project, layout: Layout, stance: str, at: QPointF
 ) -> tuple[Drop, GraphHit, QRectF | None]:
     """Return what letting a stance's chip go at a point does, what is hit, and the mark between two chips
-    where it would be listed, None where it would not.
+    where it would be listed, None if it would not.
     """
     chips = [c for c in layout.chips if c.stance is not None]
     line = [c for c in chips if c.rect.adjusted(-GRID, -GRID, GRID, GRID).contains(at)]

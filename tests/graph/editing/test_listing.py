@@ -154,5 +154,5 @@ def test_the_order_of_stances_is_kept_in_the_file_and_the_journal_and_changes_no
     )
     path = tmp_path / "p.metagraph.json"
     save_project(after, path)
-    assert stances(open_project(path)) == ["far", "rest", "up"]
+    assert stances(open_project(path).project) == ["far", "rest", "up"]
     assert make_plan(after, 30.0) == make_plan(project, 30.0)
