@@ -15,6 +15,7 @@ from metagraph.motion.roles import find_roles, is_humanoid
 from metagraph.motion.skeleton import Skeleton
 from preview import joints as rules
 from preview.figure import MeshFigure
+from preview.scene import THEMES, LampTurn, SceneTheme
 
 Array = NDArray[Any]
 Near = Literal["whole", "upper", "head"]
@@ -72,6 +73,27 @@ def find_heading(figure: MeshFigure, positions: Array) -> float:
         return 0.0
     across = p[left].mean(0) - p[right].mean(0)
     return float(np.arctan2(-across[2], across[0])) if np.hypot(across[0], across[2]) > 1e-6 else 0.0
+
+
+# Where the studio's lamp stands, degrees about +Y from where the character faces, by where the camera stands:
+# as in the first view while both cheeks are seen, then on the camera's side, behind the camera for a back.
+CAMERA_YAWS = (-180.0, -90.0, 28.0, 90.0, 180.0)
+LAMP_YAWS = (-180.0, -34.0, -34.0, 34.0, 180.0)
+
+
+def find_lamp_turn(yaw: float, heading: float = 0.0) -> LampTurn | None:
+    """Return how the studio's lamp is turned for a camera at `yaw`, so that no face in sight is in shadow;
+    None for as the theme has it. heading: where the character faces. Both are radians about +Y. The turn
+    changes steadily with the yaw.
+    """
+    beside = float(np.degrees(np.arctan2(np.sin(yaw - heading), np.cos(yaw - heading))))
+    turn = heading + float(np.radians(np.interp(beside, CAMERA_YAWS, LAMP_YAWS) - LAMP_YAWS[1]))
+    return LampTurn(turn) if abs(turn) > 1e-6 else None
+
+
+def has_studio_lamp(theme: SceneTheme) -> bool:
+    """Return whether a theme's lamp stands where the studio's does: it follows the camera; others stay."""
+    return theme.toward == THEMES[theme.name].toward
 
 
 def turn_to_face(figure: MeshFigure, positions: Array) -> float:

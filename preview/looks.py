@@ -1,4 +1,4 @@
-"""Define lights and backgrounds to look at a character in: presets that change a theme.
+"""Define lights and backgrounds to look at a character in, presets that change a theme, and seats.
 
 The light "studio" and the background "stage" leave the theme unchanged.
 """
@@ -47,6 +47,7 @@ def _plain(words: str, color: Color, shadow: bool = True) -> BackdropLook:
 
 
 STUDIO, STAGE = "studio", "stage"
+SEATS = ("stool", "chair", "none")  # what is under who sits on something
 LIGHTS: Mapping[str, Light | None] = {
     STUDIO: None,
     "day": Light(

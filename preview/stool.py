@@ -6,24 +6,17 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from metagraph.motion import rotation
-from metagraph.motion.skeleton import Skeleton
-from preview.figure import MeshFigure, join_parts
+from preview.furniture import LEG_COLOR, SEAT_COLOR, Furniture
 from preview.mesh import make_capsule, turn_profile
 from preview.scene import Actor
 
-Array = NDArray[Any]
 
-SEAT_COLOR, LEG_COLOR = (116, 119, 126), (84, 87, 94)  # neutral: in the window colours stand for kinds
-
-
-class Stool(MeshFigure):
-    """A stool of a height and a radius in metres. Its only joint is the middle of the top of its seat."""
+class Stool(Furniture):
+    """A stool of a height and a radius in metres."""
 
     def __init__(self, height: float, radius: float) -> None:
-        one = Skeleton(("Seat",), np.array([-1]), np.array([[0.0, 0, 0, 1]]), np.zeros((1, 3)))
         thick, edge = 0.07 * height, 0.02 * height
         rim = [
             (-thick, 0.0),
@@ -33,7 +26,7 @@ class Stool(MeshFigure):
             (0.0, radius - edge),
             (0.0, 0.0),
         ]
-        parts: list[Any] = [(turn_profile(rim, 36), 0, np.zeros(3), SEAT_COLOR)]
+        parts: list[Any] = [(turn_profile(rim, 36), SEAT_COLOR)]
         for angle in np.radians([45, 135, 225, 315]):
             way = np.array([np.cos(angle), 0.0, np.sin(angle)])
             top, foot = way * 0.62 * radius - [0, thick, 0], way * 0.95 * radius - [0, height, 0]
@@ -45,16 +38,9 @@ class Stool(MeshFigure):
                 rotation.rotate_vectors(turn, normals),
                 triangles,
             )
-            parts.append((shape, 0, foot, LEG_COLOR))
-        super().__init__(one, join_parts(parts, 1), np.zeros(1, int))
+            parts.append((shape, LEG_COLOR))
+        super().__init__(parts)
         self.height = height
-
-    def palette(self, rotations: Array, positions: Array) -> Array:
-        turn = np.asarray(rotations, np.float32)
-        out = np.empty((*turn.shape[:-1], 3, 4), np.float32)
-        out[..., :3] = rotation.to_matrix(turn)
-        out[..., 3] = positions
-        return out
 
 
 @lru_cache(maxsize=8)

@@ -80,10 +80,11 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--sticks", action="store_true", help="draw a stick figure where a character has no mesh"
     )
     parser.add_argument("--theme", choices=("dark", "light"), default="dark")
-    from preview.looks import BACKDROPS, LIGHTS, STAGE, STUDIO
+    from preview.looks import BACKDROPS, LIGHTS, SEATS, STAGE, STUDIO
 
     parser.add_argument("--light", choices=tuple(LIGHTS), default=STUDIO, help="the light")
     parser.add_argument("--background", choices=tuple(BACKDROPS), default=STAGE, help="the background")
+    parser.add_argument("--seat", choices=SEATS, default=SEATS[0], help="what a character sits on that sits")
 
 
 def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
@@ -116,6 +117,7 @@ def render_directed(
     look: SceneTheme | str,
     direction: Direction = ((), ()),
     into: np.ndarray | None = None,
+    seat: str = "stool",
 ) -> Iterator[np.ndarray]:
     """Yield pictures as `render_pictures` does, cut and with captions."""
     cuts, captions = direction
@@ -128,7 +130,7 @@ def render_directed(
         whole = make_whole_figure_camera(measure_bounds(seen, times), aspect, ASIDE)
         camera = lambda at: cutting.camera(seen, cuts, at, aspect) or Filmed(whole)  # noqa: E731
     if not captions:
-        yield from render_pictures(seen, times, size, look, camera, into)
+        yield from render_pictures(seen, times, size, look, camera, into, seat)
         return
     from app.cli.screenless import make_screenless_application
     from app.stage.caption_paint import add_captions
@@ -136,7 +138,7 @@ def render_directed(
 
     # Text needs the fonts of an application, which a program without a window has not.
     application = make_screenless_application()
-    for at, picture in zip(times, render_pictures(seen, times, size, look, camera, into), strict=True):
+    for at, picture in zip(times, render_pictures(seen, times, size, look, camera, into, seat), strict=True):
         yield add_captions(picture, find_captions_at(captions, float(at)))
     del application
 
@@ -196,7 +198,9 @@ def run(options: Namespace) -> int:
         sound = mix_sound(shown, folder, options.seconds, options.start) if heard else None
         look = look_of(options.theme, options.light, options.background)
         direction = _direction(project, options, shown, folder, seen)
-        shot = Shot(options.seconds, size, options.fps, options.frames, look, options.start, direction)
+        shot = Shot(
+            options.seconds, size, options.fps, options.frames, look, options.start, direction, options.seat
+        )
         draw_to(options.out, seen, shot, sound, _choose_progress(options))
     say(options, f"{options.out}", {"written": str(options.out)})
     return 0
@@ -208,7 +212,8 @@ Direction = tuple["tuple[Cut, ...]", "tuple[Caption, ...]"]  # where the camera 
 @dataclass(frozen=True)
 class Shot:
     """How a performance is filmed: seconds, size in pixels, frames a second of a video or number of pictures
-    of a contact sheet. start: second of the performance. direction: cuts and captions.
+    of a contact sheet. start: second of the performance. direction: cuts and captions. seat: what
+    a character sits on, one of `preview.looks.SEATS`.
     """
 
     seconds: float
@@ -218,6 +223,7 @@ class Shot:
     look: SceneTheme | str
     start: float = 0.0
     direction: Direction = ((), ())
+    seat: str = "stool"
 
 
 def _direction(
@@ -316,14 +322,14 @@ def draw_to(
         times = shot.start + np.arange(max(1, round(shot.seconds * shot.fps))) / shot.fps
 
         into = np.empty((height, width, 4), np.uint8)
-        drawn = render_directed(seen, times, shot.size, shot.look, shot.direction, into)
+        drawn = render_directed(seen, times, shot.size, shot.look, shot.direction, into, shot.seat)
         write_video(out, drawn, shot.fps, shot.size, lambda count: progress(count, len(times)), sound=sound)
     elif out.suffix == ".png":
         from preview.sheet import make_contact_sheet, write_png
 
         times = shot.start + np.linspace(0, shot.seconds, max(2, shot.frames))
         small = (max(16, width * 2 * min(len(seen), 2) // 9), max(16, height * 5 // 9))
-        images = list(render_directed(seen, times, small, shot.look, shot.direction))
+        images = list(render_directed(seen, times, small, shot.look, shot.direction, seat=shot.seat))
         labels = [
             f"{t:.2f} s  {', '.join(filter(None, (_doing(shown, t) for _, shown in seen)))}".rstrip()
             for t in times

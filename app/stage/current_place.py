@@ -4,6 +4,8 @@ transitions end.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from PySide6.QtCore import QObject, Signal
 
 from app.project.document import Document
@@ -56,6 +58,14 @@ class CurrentPlace(QObject):
             self.set_layer(found.layer)
         else:
             self.stance_changed.emit()
+
+    def set_stances(self, stances: Iterable[str]) -> None:
+        """Make stances of several layers the current ones, and show the layer of the first."""
+        known = [s for i in stances if (s := self.document.project.stance(i)) is not None]
+        for found in known[1:]:
+            self.stances[found.layer] = found.id
+        if known:
+            self.set_stance(known[0].id)
 
     def other(self, layer: Layer | None = None) -> str | None:
         """Return where a dropped transition ends: the chosen other stance, else the first that is not the

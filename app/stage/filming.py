@@ -46,38 +46,44 @@ def render_pictures(
     look: SceneTheme | str,
     camera: Any = None,
     into: np.ndarray | None = None,
+    seat: str = "stool",
 ) -> Iterator[np.ndarray]:
     """Yield one picture `[H, W, 4]` for each time. camera: a fixed camera, or a function from seconds to a
     camera; by default it sees everything. into: an array in which all pictures come, for callers that finish
-    with one before they ask for the next.
+    with one before they ask for the next. seat: one of `preview.looks.SEATS`.
     """
     from app.stage.cutting import Filmed
     from app.stage.stools import make_stools
     from preview.camera import make_whole_figure_camera
     from preview.drawing_apart import draw_scenes
-    from preview.framing import turn_to_face
+    from preview.framing import find_lamp_turn, has_studio_lamp, turn_to_face
     from preview.scene import THEMES, LampTurn, Scene
 
     theme = THEMES[look] if isinstance(look, str) else look
 
-    seats = tuple(seat for _, shown in seen for seat in make_stools(shown))
+    seats = tuple(one for _, shown in seen for one in make_stools(shown, seat))
+    figure, first = seen[0]
+    pose = first.pose(float(times[0])) if len(seen) == 1 and not callable(camera) else None
+    turn = 0.0
+    if pose is not None and first.skeleton is not None:
+        turn = turn_to_face(figure, first.skeleton.globals(pose)[1])
+    if camera is not None and not callable(camera):
+        follows = len(seen) == 1 and has_studio_lamp(theme)
+        lamp = find_lamp_turn(camera.yaw, turn) if follows else LampTurn(turn) if turn else None
+        kept = Filmed(camera, lamp)
+        camera = lambda _: kept  # noqa: E731
     if camera is None:
         box = measure_bounds(seen, times)
-        figure, shown = seen[0]
-        pose = shown.pose(float(times[0])) if len(seen) == 1 else None
-        turn = 0.0
-        if pose is not None and shown.skeleton is not None:
-            turn = turn_to_face(figure, shown.skeleton.globals(pose)[1])
         whole = make_whole_figure_camera(box, size[0] / size[1], ASIDE if len(seen) > 1 else turn)
         filmed = Filmed(whole, LampTurn(turn) if turn else None)
         camera = lambda _: filmed  # noqa: E731
 
     def scenes() -> Iterator[tuple[Scene, Any]]:
-        for first in range(0, len(times), TOGETHER):
-            some = times[first : first + TOGETHER]
+        for start in range(0, len(times), TOGETHER):
+            some = times[start : start + TOGETHER]
             acted = zip(*(_actors(figure, shown, some) for figure, shown in seen), strict=True)
             for at, actors in zip(some, acted, strict=True):
-                now = camera(float(at)) if callable(camera) else Filmed(camera)
+                now = camera(float(at))
                 yield Scene((*actors, *seats), lamp=now.lamp), now.camera
 
     return draw_scenes(scenes(), len(times), size, theme, into)

@@ -34,7 +34,8 @@ class RenderOrder:
     `performance` is the id of a kept one, None to improvise in `mode`. `conversation` is the id of one,
     then with all its sides. `size` is width and height in pixels. `light` and `background` are names from
     `preview.looks`. `start` is the second at which it begins. `captions` shows words, `cuts` uses a
-    conversation's camera cuts, and `sticks` draws a stick figure where a character has no mesh.
+    conversation's camera cuts, and `sticks` draws a stick figure where a character has no mesh. `seat` is one
+    of `preview.looks.SEATS`.
     """
 
     out: Path
@@ -51,6 +52,7 @@ class RenderOrder:
     cuts: bool = True
     sticks: bool = False
     mode: Mode = "talking"
+    seat: str = "stool"
 
 
 def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: WindowJob) -> Path:
@@ -77,6 +79,8 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
             wanted.light,
             "--background",
             wanted.background,
+            "--seat",
+            wanted.seat,
             "--progress",
             "--start",
             f"{wanted.start:.6f}",

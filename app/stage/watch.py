@@ -39,7 +39,8 @@ class Watched:
     `sticks` draws characters without a mesh as stick figures instead of the default body.
     `feet` shows which foot is held, steps or is lifted, and slides. `hands` shows which are kept in contact.
     `stance` shows a ghost in the stance underneath. `before` and `after` are the numbers of ghosts of other
-    moments, `spacing` seconds apart. `light` and `background` are names from `preview.looks`.
+    moments, `spacing` seconds apart. `light` and `background` are names from `preview.looks`,
+    `seat` is one of `preview.looks.SEATS`.
     """
 
     feet: bool = False
@@ -53,6 +54,7 @@ class Watched:
     panes: int = 1
     sticks: bool = False
     sides: str = "front left face"
+    seat: str = "stool"
 
     def look(self, theme: str) -> SceneTheme:
         """Return a theme with this light and background."""
@@ -98,6 +100,8 @@ def _kept() -> Watched:
     sides = kept.sides.split()
     if kept.panes not in PANES or len(sides) != 3 or not set(sides) <= set(SIDES):
         kept = replace(kept, panes=first.panes, sides=first.sides)
+    if kept.seat not in ("stool", "chair", "none"):
+        kept = replace(kept, seat=first.seat)
     ghosts = {k: min(max(getattr(kept, k), 0), MOST_GHOSTS) for k in ("before", "after")}
     if (kept.light, kept.background) != (STUDIO, STAGE):
         from preview.looks import BACKDROPS, LIGHTS

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import pytest
 
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.formats.store import open_project
-from metagraph.graph.model import Project
+from metagraph.graph.model import BasePose, Project
 from metagraph.graph.seats import find_seat
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -135,6 +136,19 @@ def test_one_sits_until_asked_to_stand() -> None:
     assert not plan.reports
 
 
+def lowered(sitting: Project, metres: float) -> Project:
+    """Return a project whose clips have their roots lower."""
+    clips = {}
+    for ident, entry in sitting.clips.items():
+        motion = entry.motion
+        if motion is not None:
+            at = motion.translations.copy()
+            at[:, 0, 1] -= metres
+            entry = replace(entry, motion=replace(motion, translations=at))
+        clips[ident] = entry
+    return replace(sitting, clips=clips)
+
+
 def test_a_seat_is_beneath_who_sits_and_none_where_nobody_does() -> None:
     seat = find_seat(project())
     assert seat is not None
@@ -142,6 +156,13 @@ def test_a_seat_is_beneath_who_sits_and_none_where_nobody_does() -> None:
     assert seat.at[2] == pytest.approx(SEAT[2], abs=0.06)
     assert find_seat(open_project(SAMPLES / "sample.metagraph.yaml").project) is None
     assert find_seat(Project()) is None
+
+
+def test_who_sits_on_the_floor_has_a_place_there() -> None:
+    sitting = replace(project(), base=BasePose())
+    seat = find_seat(lowered(sitting, 0.36))
+    assert seat is not None and seat.floor and seat.at[1] == 0.0 and seat.radius > 0.6
+    assert not find_seat(sitting).floor  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize("name", NAMES[::9])

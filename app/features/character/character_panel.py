@@ -37,7 +37,7 @@ from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph.model import LAYERS, Project
 from preview.camera import Camera, close_up, make_whole_figure_camera
 from preview.figure import MeshFigure, SkinnedFigure
-from preview.framing import turn_to_face
+from preview.framing import find_lamp_turn, has_studio_lamp, turn_to_face
 from preview.scene import Actor, LampTurn, Scene
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
@@ -68,7 +68,7 @@ class PreviewPanel(QWidget):
         self.bones = False
         self.shown_elsewhere = False  # in a window of its own
         self._framed: tuple[object, ...] = ()  # whom the camera was last framed on
-        self._lamp: LampTurn | None = None  # how the light is turned for one who faces elsewhere
+        self._turn = 0.0  # where the character faces who was framed, radians about +Y
         self.composed = Scene()  # what was drawn last
         self._last: tuple[MeshFigure, np.ndarray, np.ndarray] | None = None
         self._marks: dict[int, tuple[float, float, float]] = {}  # of joints, as drawn last
@@ -259,28 +259,36 @@ class PreviewPanel(QWidget):
             actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
             if one is shown:
                 actors += self.overlays.made(figure, seconds)
-        seats = (seat for one in shown.everyone for seat in make_stools(one))
+        kind = self.session.watch.now.seat
+        seats = (seat for one in shown.everyone for seat in make_stools(one, kind))
         behind = self.reference.picture if self.reference.behind else None
         scene = Scene((*actors, *seats), picture=behind)
         shape = round(self.view.width() / max(1, self.view.height()), 1)  # frame it again for another size
         solid = Scene(tuple(actor for actor in actors if actor.opacity >= 1))  # ghosts do not move the camera
         framed = (*(actor.figure for actor in solid.actors), *(one.stand for one in shown.everyone), shape)
-        self.composed = scene
         lamp = self.directing.follow(shown, seconds)
         if lamp is not None:  # a cut has the camera
-            return replace(scene, lamp=lamp)
+            self.composed = replace(scene, lamp=lamp)
+            return self.composed
         if actors and self._framed != framed and not self.view.moved_by_hand:
             self._framed = framed
             first = solid.actors[0]
             turn = 0.0 if shown.others else turn_to_face(first.figure, first.positions)
-            self._lamp = LampTurn(turn) if turn else None
+            self._turn = turn
             aside = ASIDE if shown.others else turn
             self.view.camera = make_whole_figure_camera(
                 solid.drawn_bounds(), self.view.width() / max(1, self.view.height()), aside
             )
         elif self._last is not None:
             self.looking.keep_in_picture(shown, self._last[0])
-        return scene if self._lamp is None else replace(scene, lamp=self._lamp)
+        self.composed = replace(scene, lamp=self._find_lamp(alone=not shown.others))
+        return self.composed
+
+    def _find_lamp(self, alone: bool) -> LampTurn | None:
+        """Return how the lamp is turned: the studio's follows the camera, all follow who faces elsewhere."""
+        if alone and has_studio_lamp(self.view.theme):
+            return find_lamp_turn(self.view.camera.yaw, self._turn)
+        return LampTurn(self._turn) if self._turn else None
 
     def _run_or_rest(self) -> None:
         """Count the time while it plays; what is paused costs nothing."""

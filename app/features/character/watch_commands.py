@@ -25,10 +25,11 @@ SHOWN = (
     ("feet", "hands_touch", "next_slide", "trails", "bones"),
     ("stance_ghost", "onion", "onion_skin"),
     ("two_views", "four_views"),
-    ("light", "background"),
+    ("light", "background", "seat"),
     ("reference", "no_reference"),
     ("meshes", "sticks"),
 )
+SEAT_WORDS = {"stool": tr_noop("Stool"), "chair": tr_noop("Chair"), "none": tr_noop("None")}
 GHOSTS = 2  # before and after, where onion skin is turned on by its key
 AHEAD = 120.0  # seconds that are searched for a slide
 VIEW = "&View"
@@ -111,6 +112,9 @@ class WatchFeature(Feature):
 
     def fill_backgrounds(self, menu: QMenu) -> None:
         fill_choice(self.shell, menu, "background")
+
+    def fill_seats(self, menu: QMenu) -> None:
+        fill_choice(self.shell, menu, "seat")
 
     def use_next_light(self) -> None:
         choose_next_light(self.watch)
@@ -229,6 +233,7 @@ WATCH_COMMANDS = (
     ),
     Command("light", VIEW, "watch", tr_noop("Li&ght"), fill=WatchFeature.fill_lights),
     Command("background", VIEW, "watch", tr_noop("Back&ground"), fill=WatchFeature.fill_backgrounds),
+    Command("seat", VIEW, "watch", tr_noop("S&eat"), fill=WatchFeature.fill_seats),
     Command(
         "next_light",
         VIEW,
@@ -280,13 +285,15 @@ def choose_next_light(watch: Watch) -> None:
 
 
 def fill_choice(shell: Shell, menu: QMenu, name: str) -> None:
-    """Fill a menu of lights or backgrounds. name: of `Watched`."""
-    from preview.looks import BACKDROPS, LIGHTS, look_name
+    """Fill a menu of lights, backgrounds or seats. name: of `Watched`."""
+    from preview.looks import BACKDROPS, LIGHTS, SEATS, look_name
 
-    choices: Iterable[str] = LIGHTS if name == "light" else BACKDROPS
+    choices: Iterable[str] = {"light": LIGHTS, "background": BACKDROPS, "seat": SEATS}[name]
     watch, group = shell.stage.session.watch, QActionGroup(menu)
     for choice in choices:
-        action = QAction(tr(look_name(choice)), menu, checkable=True)
+        action = QAction(
+            tr(SEAT_WORDS[choice] if name == "seat" else look_name(choice)), menu, checkable=True
+        )
         action.setChecked(getattr(watch.now, name) == choice)
         action.triggered.connect(lambda _=False, c=choice: watch.set(**{name: c}))
         group.addAction(action)

@@ -19,9 +19,10 @@ from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.half_labels import follow_stance_name
-from metagraph.graph.editing.listing import shift_actions
+from metagraph.graph.editing.listing import reorder_stances, shift_actions, shift_stance
 from metagraph.graph.editing.merging_stances import merge_stances
-from metagraph.graph.model import KINDS, Action, Kind, Project
+from metagraph.graph.model import KINDS, LAYERS, Action, Kind, Project, Stance
+from metagraph.graph.same_stances import find_same_stances
 
 
 class GraphActs(QObject):
@@ -144,6 +145,55 @@ class GraphActs(QObject):
             return
         self.session.place.set_stance(into)
 
+    def list_stance(self, stance: str, before: str | None) -> None:
+        """List a stance in front of another, or at the end."""
+        self.document.edit(tr("Reorder stances"), lambda p: reorder_stances(p, stance, before))
+
+    def shift_stance(self, steps: int, stance: str | None = None) -> None:
+        """List a stance, else the current one, a place earlier (-1) or later (1)."""
+        found = stance or self.session.place.stance()
+        if found is not None:
+            self.document.edit(tr("Reorder stances"), lambda p: shift_stance(p, found, steps))
+
+    def show_stance(self, stance: str) -> None:
+        """Show a stance, and on the other layers those that are one posture with it."""
+        found = self.document.project.stance(stance)
+        if found is not None:
+            same = find_same_stances(self.document.project, found.layer).get(stance, ())
+            self.session.place.set_stances((stance, *(s.id for s in same)))
+
+    def find_stance(self) -> None:
+        """Ask for a stance by typing, and go there."""
+        from app.features.graph.stance_finder import StanceFinder
+
+        layer = self.session.place.layer
+        StanceFinder(self.document.project, layer, self.show_stance, self.widget.window()).open()
+
+    def list_namesakes(self, stance: str) -> list[Stance]:
+        """The stances of other layers whose name a stance can take, to be one posture with them."""
+        project, found = self.document.project, self.document.project.stance(stance)
+        if found is None:
+            return []
+        taken = {s.name.casefold() for s in project.graphs[found.layer].stances.values() if s.id != stance}
+        others = (s for x in LAYERS if x != found.layer for s in project.graphs[x].stances.values())
+        return [s for s in others if s.name.casefold() not in taken]
+
+    def mark_same(self, stance: str, other: str) -> None:
+        """Make a stance one posture with a stance of another layer: it takes its name."""
+        found = self.document.project.stance(other)
+        if found is not None:
+            self._rename(stance, found.name, tr("Same stance as {other}", other=found.name))
+
+    def _rename(self, stance: str, name: str, words: str) -> None:
+        def rename(project: Project) -> Project:
+            before = project.stance(stance)
+            project = edits.rename_stance(project, stance, name)
+            renamed = project.stance(stance)
+            assert before is not None and renamed is not None
+            return follow_stance_name(project, before.layer, before.name, renamed.name)
+
+        self.document.edit(words, rename)
+
     def show_clip(self) -> None:
         actions = self.session.selection.selected_actions()
         self.session.selection.select_clips(tuple(dict.fromkeys(a.clip for a in actions)))
@@ -165,14 +215,7 @@ class GraphActs(QObject):
             return
         name, accepted = QInputDialog.getText(self.widget, tr("Rename stance"), tr("Name:"), text=found.name)
         if accepted and name.strip():
-
-            def rename(project: Project) -> Project:
-                project = edits.rename_stance(project, found.id, name)
-                renamed = project.stance(found.id)
-                assert renamed is not None
-                return follow_stance_name(project, found.layer, found.name, renamed.name)
-
-            self.document.edit(tr("Rename stance"), rename)
+            self._rename(found.id, name, tr("Rename stance"))
 
     def remove_selection(self) -> None:
         """Take the selected actions out of the graph."""

@@ -5,9 +5,9 @@ beside it.
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from PySide6.QtCore import QEvent, QPointF, QSizeF, Qt, Signal
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSizeF, Qt, Signal
 from PySide6.QtGui import (
     QAction,
     QContextMenuEvent,
@@ -46,7 +46,7 @@ from app.features.graph.graph_menus import make_ends_menu, make_menu_for
 from app.features.graph.graph_painter import paint_graph
 from app.features.graph.graph_parts import Parts, find_stale_region, list_graph_parts
 from app.features.graph.graph_pictures import Beat, GraphPictures, find_graph_pictures
-from app.features.graph.graph_words import count_machine, describe_graph_hit
+from app.features.graph.graph_words import count_machine, describe_graph_hit, describe_same_stances
 from app.look.theme import get_theme
 from app.project.document import Document
 from app.stage.performance import StagePerformance
@@ -57,7 +57,8 @@ from app.widgets.gesture import PointerHand
 from app.widgets.memo import Once
 from app.widgets.mime import load_of
 from app.widgets.soon import Soon
-from metagraph.graph.model import Kind, Project
+from metagraph.graph.model import Kind, Project, Stance
+from metagraph.graph.same_stances import find_same_stances
 
 KEYS = tr_noop(
     "The actions of each node. Up and Down select an action, Left and Right lower or raise "
@@ -95,8 +96,10 @@ class Canvas(QWidget):
         self._drop_hit = NOWHERE
         self._drop_at: QPointF | None = None  # where something is held over it
         self.arrow: tuple[QPointF, QPointF] | None = None  # of a transition, being dragged
+        self.mark: QRectF | None = None  # where a stance that is dragged would be listed
         self._layout: Layout | None = None
         self._counted: Once[str] = Once()  # the sentence about the graphs
+        self._sames: Once[Mapping[str, tuple[Stance, ...]]] = Once()
         self._played: frozenset[str] = frozenset()  # as last drawn
         self._drawn: Parts = {}  # as last painted
         self._soon = Soon(self._refresh, self)
@@ -127,9 +130,10 @@ class Canvas(QWidget):
             metrics = QFontMetricsF(self.font())
             project, place = self.document.project, self.session.place
             names = [s.name for s in project.graphs[place.layer].stances.values()]
-            widths = {text: metrics.horizontalAdvance(text) for text in (*names, *HOLES)}
+            same = describe_same_stances(self._same())
+            widths = {text: metrics.horizontalAdvance(text) for text in (*names, *HOLES, *same.values())}
             size, rows = QSizeF(self.size()), self.first_rows
-            self._layout = lay_out_canvas(project, place.layer, place.stance(), size, rows, widths)
+            self._layout = lay_out_canvas(project, place.layer, place.stance(), size, rows, widths, same)
         return self._layout
 
     def _stale(self) -> None:
@@ -184,6 +188,8 @@ class Canvas(QWidget):
             drop_hit=self._drop_hit,
             drop_at=self._drop_at,
             arrow=self.arrow,
+            mark=self.mark,
+            same=self._same(),
             sentence=self._sentence(),
         )
 
@@ -194,6 +200,11 @@ class Canvas(QWidget):
             return words[:1].upper() + words[1:]
         project = self.document.project
         return self._counted.of((), (project.graphs,), lambda: count_machine(project))
+
+    def _same(self) -> Mapping[str, tuple[Stance, ...]]:
+        """The stances of other layers that are one posture with a stance of this layer, by its id."""
+        project, layer = self.document.project, self.session.place.layer
+        return self._sames.of((layer,), (project.graphs,), lambda: find_same_stances(project, layer))
 
     def _playing(self) -> frozenset[str]:
         plan = self.performance.shown.plan
@@ -210,9 +221,17 @@ class Canvas(QWidget):
                 for node in self.layout_now().nodes.values():
                     self.update(node.rect.toAlignedRect())
 
-    def point(self, drop: Drop | None, hit: GraphHit, arrow: tuple[QPointF, QPointF] | None) -> None:
-        """Show an arrow that is being dragged, and what letting it go would do; or none any more."""
-        self.drop, self._drop_hit, self.arrow = drop, hit, arrow
+    def point(
+        self,
+        drop: Drop | None,
+        hit: GraphHit,
+        arrow: tuple[QPointF, QPointF] | None,
+        mark: QRectF | None = None,
+    ) -> None:
+        """Show an arrow that is being dragged, or a mark between two stances, and what letting go would do;
+        or none any more.
+        """
+        self.drop, self._drop_hit, self.arrow, self.mark = drop, hit, arrow, mark
         self.update()
 
     def stop(self) -> None:
@@ -252,6 +271,9 @@ class Canvas(QWidget):
     def merge(self, merged: str, into: str) -> None:
         self.acts.merge(merged, into)
 
+    def list_stance(self, stance: str, before: str | None) -> None:
+        self.acts.list_stance(stance, before)
+
     def refuse(self, words: str) -> None:
         self.acts.refused.emit(words)
 
@@ -264,10 +286,12 @@ class Canvas(QWidget):
         if event.button() != Qt.MouseButton.LeftButton:
             return
         if hit.area == "chip" and hit.ident:
-            self.session.place.set_stance(hit.ident)
+            self.acts.show_stance(hit.ident)
             self.hand.take(ChipDrag(self, hit.ident), event.position())
         elif hit.area == "add":
             self.acts.new_stance()
+        elif hit.area == "find":
+            self.acts.find_stance()
         elif hit.area == "other":
             make_ends_menu(self.acts).exec(event.globalPosition().toPoint())
         elif hit.area == "bar" and hit.ident:
@@ -324,7 +348,7 @@ class Canvas(QWidget):
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
             hit = self.layout_now().hit(QPointF(event.pos()))
             project, other = self.document.project, self.session.place.other()
-            words = describe_graph_hit(project, self.layout_now(), hit, other, self.misfits)
+            words = describe_graph_hit(project, self.layout_now(), hit, other, self.misfits, self._same())
             QToolTip.showText(event.globalPos(), words, self)
             return True
         return super().event(event)

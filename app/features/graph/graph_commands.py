@@ -97,7 +97,19 @@ class GraphFeature(Feature):
 
     def choose_stance(self, number: int) -> None:
         if self.has_stance(number):
-            self.place.set_stance(self.stances()[number - 1].id)
+            self.canvas.acts.show_stance(self.stances()[number - 1].id)
+
+    def find_stance(self) -> None:
+        self.canvas.acts.find_stance()
+
+    def has_stances(self) -> bool:
+        return any(graph.stances for graph in self.document.project.graphs.values())
+
+    def stance_earlier(self) -> None:
+        self.canvas.acts.shift_stance(-1)
+
+    def stance_later(self) -> None:
+        self.canvas.acts.shift_stance(1)
 
     def stance_name(self, number: int) -> str:
         found = self.stances()
@@ -176,6 +188,44 @@ COMMANDS = (
             study=True,
         )
         for layer in LAYERS
+    ),
+    Command(
+        "find_stance",
+        MENU,
+        "stances",
+        tr_noop("&Find stance…"),
+        GraphFeature.find_stance,
+        ("Ctrl+G",),
+        tip=tr_noop("Find a stance of any layer by typing its name"),
+        enabled=GraphFeature.has_stances,
+        when="meta",
+        study=True,
+    ),
+    Command(
+        "stance_earlier",
+        MENU,
+        "stances",
+        tr_noop("Move stance &left"),
+        GraphFeature.stance_earlier,
+        ("Alt+Shift+Left",),
+        tip=tr_noop(
+            "Move the current stance one place to the left in the strip. This does not change what plays."
+        ),
+        enabled=partial(GraphFeature.has_stance, number=2),
+        when="meta",
+    ),
+    Command(
+        "stance_later",
+        MENU,
+        "stances",
+        tr_noop("Move stance &right"),
+        GraphFeature.stance_later,
+        ("Alt+Shift+Right",),
+        tip=tr_noop(
+            "Move the current stance one place to the right in the strip. This does not change what plays."
+        ),
+        enabled=partial(GraphFeature.has_stance, number=2),
+        when="meta",
     ),
     *(
         Command(

@@ -24,13 +24,16 @@ FOOT, FOOT_NARROW = 40, 62  # the sentence at the bottom, in two lines or three
 CHIP_MIN, SHORT, CHIP_MAX = 108, 150, 230
 BESIDES = 80  # pixels of a chip beside its words
 BOLD = 1.12  # how much wider the card's name is than the chip's
+MANY = 9  # stances, as many as keys go to; with more, the last chip finds one
 BARE = 0  # in the place of a width: chips as wide as their names, which is all they show
 TIGHT = -1  # and: as many in a line as can be distinguished
 TIGHTEST = 84.0
 CHOOSER = 196.0  # pixels from a chooser to the right edge of its node: "another stance?" is reported whole
 LEAST_NODES = 300.0  # pixels of height for a card and its nodes below each other
 
-Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "head", "other", "start", "nothing"]
+Area = Literal[
+    "chip", "add", "find", "card", "loop", "node", "row", "bar", "head", "other", "start", "nothing"
+]
 
 
 @dataclass(frozen=True)
@@ -75,8 +78,10 @@ class NodeLayout:
 
 @dataclass(frozen=True)
 class Chip:
-    """The chip of a stance; stance None is the "+" at the end. words: what the stance lacks. bare: there
-    is only room for the name.
+    """The chip of a stance; stance None is the "+" at the end, or what finds a stance there if `finds`.
+    words:
+    what the stance lacks. same: the other layers whose stance it is, too. bare: there is only room for the
+    name.
     """
 
     stance: str | None
@@ -85,6 +90,8 @@ class Chip:
     count: int = 0
     words: str = ""
     bare: bool = False
+    same: str = ""
+    finds: bool = False
 
 
 @dataclass(frozen=True)
@@ -105,7 +112,9 @@ class Layout:
         """Return what is under a point. `dragging` splits the card into "a new stance" and "another loop"."""
         for chip in self.chips:
             if chip.rect.contains(at):
-                return GraphHit("add") if chip.stance is None else GraphHit("chip", chip.stance)
+                if chip.stance is not None:
+                    return GraphHit("chip", chip.stance)
+                return GraphHit("find" if chip.finds else "add")
         for node in self.nodes.values():
             if not node.rect.contains(at):
                 continue
@@ -166,9 +175,10 @@ def lay_out_canvas(
     size: QSizeF,
     scroll: Mapping[Kind, int] | None = None,
     widths: Mapping[str, float] | None = None,
+    same: Mapping[str, str] | None = None,
 ) -> Layout:
     """Lay out the canvas. scroll: the first visible row of each node. widths: text widths of the chips, in
-    pixels.
+    pixels. same: on which other layers a stance is, too, in words.
     """
     scroll, widths = scroll or {}, widths or {}
     width = max(size.width(), LEAST_WIDTH)
@@ -177,14 +187,14 @@ def lay_out_canvas(
 
     # Many stances in a low window: narrower chips without words leave room for the nodes.
     for widest in (CHIP_MAX, SHORT, BARE):
-        chips = _chips(project, graph, width, widths, widest)
+        chips = _chips(project, graph, width, widths, widest, same or {})
         top = chips[-1].rect.bottom() + 2 * GRID
         # Names go before pictures and counts.
-        whole = widest != SHORT or all(_told(c, widths) + BESIDES <= SHORT for c in chips[:-1])
+        whole = widest != SHORT or all(_told(c, widths) + BESIDES <= SHORT for c in chips if c.stance)
         if top < height - FOOT - 320 and whole:
             break
     if top > height - FOOT - LEAST_NODES:  # names alone take too much, too
-        chips = _chips(project, graph, width, widths, TIGHT)
+        chips = _chips(project, graph, width, widths, TIGHT, same or {})
         top = chips[-1].rect.bottom() + 2 * GRID
     actions = {kind: graph.of(stance, kind) if stance else () for kind in BESIDE}
     counts = {kind: len(found) for kind, found in actions.items()}
@@ -220,9 +230,14 @@ def lay_out_canvas(
 
 
 def _chips(
-    project: Project, graph: MetaGraph, width: float, widths: Mapping[str, float], widest: float
+    project: Project,
+    graph: MetaGraph,
+    width: float,
+    widths: Mapping[str, float],
+    widest: float,
+    same: Mapping[str, str],
 ) -> list[Chip]:
-    """Return the stances as chips in lines, and the "+" after them."""
+    """Return the stances as chips in lines, the "+" after them, and what finds one if there are many."""
     chips: list[Chip] = []
     x, y, room = 2.0 * GRID, float(CHIP_TOP), width - 4 * GRID
     for ident, s in graph.stances.items():
@@ -232,20 +247,30 @@ def _chips(
         if words:
             told = text + widths.get(words, 7 * len(words)) + 8
             words, text = (words, told) if told + BESIDES <= room else ("", text)  # its name goes before
+        also = same.get(ident, "") if widest == CHIP_MAX else ""
+        if also:
+            told = text + widths.get(also, 7 * len(also)) + 8
+            also, text = (also, told) if told + BESIDES <= room else ("", text)
         if widest == TIGHT:
             many = max(2, int(room // (TIGHTEST + GRID)))
             w = (room - (many - 1) * GRID) / many
         elif widest == BARE:
             w = min(widths.get(s.name, 7.2 * len(s.name)) + 26, room)
         else:
-            w = min(max(text + BESIDES, CHIP_MIN), widest + (BESIDES if words else 0), room)
+            w = min(max(text + BESIDES, CHIP_MIN), widest + BESIDES * (bool(words) + bool(also)), room)
         if x + w > width - 2 * GRID and x > 2 * GRID:
             x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
-        chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words, widest <= BARE))
+        chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words, widest <= BARE, also))
         x += w + GRID
     if x + CHIP_HEIGHT > width - GRID:
         x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
-    return [*chips, Chip(None, QRectF(x, y, CHIP_HEIGHT, CHIP_HEIGHT), "+")]
+    chips.append(Chip(None, QRectF(x, y, CHIP_HEIGHT, CHIP_HEIGHT), "+"))
+    if len(graph.stances) > MANY:
+        x += CHIP_HEIGHT + GRID
+        if x + CHIP_HEIGHT > width - GRID:
+            x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
+        chips.append(Chip(None, QRectF(x, y, CHIP_HEIGHT, CHIP_HEIGHT), "?", finds=True))
+    return chips
 
 
 def _told(chip: Chip, widths: Mapping[str, float]) -> float:

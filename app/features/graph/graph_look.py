@@ -12,7 +12,7 @@ from app.features.graph.graph_drops import Drop
 from app.features.graph.graph_layout import GraphHit
 from app.look.shortening import shorten_to_font
 from app.look.theme import WindowTheme
-from metagraph.graph.model import Kind, Project
+from metagraph.graph.model import Kind, Project, Stance
 
 RADIUS = 8.0
 KNOWN = 512  # pictures
@@ -42,6 +42,8 @@ class GraphLook:
     drop_hit: GraphHit = NOWHERE
     drop_at: QPointF | None = None  # where something is held: what a drop does stands beside it
     arrow: tuple[QPointF, QPointF] | None = None  # being dragged, from where to where
+    mark: QRectF | None = None  # between two chips, where one that is dragged would be listed
+    same: Mapping[str, tuple[Stance, ...]] = field(default_factory=dict)  # see `find_same_stances`
     sentence: str = ""
 
 

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QMenu
 from app.features.graph.graph_acts import GraphActs
 from app.features.graph.graph_layout import GraphHit
 from app.translation import tr
+from app.widgets.vocabulary import get_vocabulary_title
 from metagraph.graph import edits
 
 
@@ -53,6 +54,19 @@ def make_menu_for(acts: GraphActs, hit: GraphHit, row_actions: Sequence[QAction]
             into = menu.addMenu(tr("Merge into"))
             for stance in others:
                 into.addAction(stance.name, partial(acts.merge, stance_id, stance.id))
+        namesakes = acts.list_namesakes(stance_id)
+        if namesakes:
+            same = menu.addMenu(tr("Same as"))
+            own = acts.document.project.stance(stance_id)
+            for stance in namesakes:
+                text = tr("{layer}: {stance}", layer=get_vocabulary_title(stance.layer), stance=stance.name)
+                entry = same.addAction(text, partial(acts.mark_same, stance_id, stance.id))
+                entry.setCheckable(True)
+                entry.setChecked(own is not None and own.name.casefold() == stance.name.casefold())
+        menu.addSeparator()
+        menu.addAction(tr("Move stance left"), partial(acts.shift_stance, -1, stance_id))
+        menu.addAction(tr("Move stance right"), partial(acts.shift_stance, 1, stance_id))
+        menu.addAction(tr("Find stance…"), acts.find_stance)
         menu.addSeparator()
         menu.addAction(
             tr("Remove stance and its actions"),

@@ -42,6 +42,10 @@ def paint_graph(
             look.sentence,
         )
     draw_verdict(painter, layout, look, font)
+    if look.mark is not None:
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(look.theme.fill("stance"))
+        painter.drawRoundedRect(look.mark, 1.5, 1.5)
     if look.arrow is not None:
         draw_arrow(
             painter, *look.arrow, look.theme.kind("transition"), look.drop is not None and look.drop.possible

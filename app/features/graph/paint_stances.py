@@ -21,11 +21,11 @@ from app.translation import tr, tr_plural
 def draw_chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: QFont) -> None:
     t, beside = look.theme, tuple(make_readable_name(c.name) for c in layout.chips)
     target = look.drop is not None and (
-        (look.drop_hit.area == "add" and chip.stance is None)
+        (look.drop_hit.area == "add" and chip.stance is None and not chip.finds)
         or (look.drop_hit.area == "chip" and look.drop_hit.ident == chip.stance and chip.stance is not None)
     )
     current = chip.stance is not None and chip.stance == layout.stance
-    hover = (look.hover.area == "add" and chip.stance is None) or (
+    hover = (look.hover.area == ("find" if chip.finds else "add") and chip.stance is None) or (
         look.hover.area == "chip" and chip.stance is not None and look.hover.ident == chip.stance
     )
     edge = t.fill("stance") if current or target else QColor(t.line)
@@ -40,6 +40,11 @@ def draw_chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, fo
     if chip.stance is None:
         painter.setPen(QPen(QColor(t.text), 1.6))
         c = chip.rect.center()
+        if chip.finds:  # a magnifying glass
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawEllipse(c - QPointF(1.5, 1.5), 4.5, 4.5)
+            painter.drawLine(c + QPointF(2, 2), c + QPointF(6, 6))
+            return
         painter.drawLine(c - QPointF(5, 0), c + QPointF(5, 0))
         painter.drawLine(c - QPointF(0, 5), c + QPointF(0, 5))
         return
@@ -62,7 +67,9 @@ def draw_chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, fo
         painter.drawEllipse(QPointF(chip.rect.left() + 16, chip.rect.center().y()), 4, 4)
     inner.setLeft(chip.rect.left() + (chip.rect.height() + 8 if picture is not None else 28))
     metrics = QFontMetricsF(font)
-    right = chip.words or ""
+    right, tone = chip.words or "", t.warning
+    if chip.same:
+        right, tone = (f"{right}  {chip.same}", t.warning) if right else (chip.same, t.dim)
     count = str(chip.count)
     used = metrics.horizontalAdvance(count) + (metrics.horizontalAdvance(right) + 8 if right else 0) + 8
     painter.setFont(make_bold(font) if current else font)
@@ -73,7 +80,7 @@ def draw_chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, fo
     painter.setPen(QColor(t.dim))
     painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, count)
     if right:
-        painter.setPen(QColor(t.warning))
+        painter.setPen(QColor(tone))
         painter.drawText(
             inner.adjusted(0, 0, -metrics.horizontalAdvance(count) - 8, 0),
             Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight,

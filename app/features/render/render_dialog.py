@@ -211,6 +211,7 @@ class RenderDialog(QDialog):
             self.cuts.isChecked(),
             self.session.watch.now.sticks,
             self.session.onstage.improvised,
+            self.session.watch.now.seat,
         )
         QSettings().setValue("render/size", self.size_box.currentIndex())
         project, folder = document.project, document.folder or Path()

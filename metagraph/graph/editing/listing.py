@@ -54,10 +54,40 @@ def reorder_actions(project: Project, actions: Collection[str], before: str | No
     return _listed(project, node, [*rest[:at], *moving, *rest[at:]])
 
 
+def reorder_stances(project: Project, stance: str, before: str | None) -> Project:
+    """List a stance in front of another of its layer, or at the end for None. This does not change what
+    plays.
+    """
+    found = project.stance(stance)
+    if found is None or before == stance:
+        return project
+    graph = project.graphs[found.layer]
+    rest = [i for i in graph.stances if i != stance]
+    at = rest.index(before) if before in rest else len(rest)
+    order = [*rest[:at], stance, *rest[at:]]
+    if order == list(graph.stances):
+        return project
+    return project.with_graph(graph.but(stances={i: graph.stances[i] for i in order}))
+
+
+def shift_stance(project: Project, stance: str, steps: int) -> Project:
+    """List a stance a place earlier in its layer (-1) or later (1), if there is one."""
+    found = project.stance(stance)
+    if found is None:
+        return project
+    order = list(project.graphs[found.layer].stances)
+    at = order.index(stance) + steps
+    if not 0 <= at < len(order):
+        return project
+    rest = [i for i in order if i != stance]
+    return reorder_stances(project, stance, rest[at] if at < len(rest) else None)
+
+
 def is_listed_differently(before: Project, after: Project) -> bool:
-    """Return whether two projects that are equal list their actions in another order."""
-    graphs = ((before.graphs[layer].actions, after.graphs[layer].actions) for layer in before.graphs)
-    return any(one is not other and list(one) != list(other) for one, other in graphs)
+    """Return whether two projects that are equal list their actions or stances in another order."""
+    graphs = [(before.graphs[layer], after.graphs[layer]) for layer in before.graphs]
+    pairs = (pair for a, b in graphs for pair in ((a.actions, b.actions), (a.stances, b.stances)))
+    return any(one is not other and list(one) != list(other) for one, other in pairs)
 
 
 def shift_actions(project: Project, actions: Collection[str], steps: int) -> Project:

@@ -7,7 +7,14 @@ import pytest
 from metagraph.formats.project.journal import find_changes
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits
-from metagraph.graph.editing.listing import duplicate_clips, reorder_actions, shift_actions
+from metagraph.graph.editing.listing import (
+    duplicate_clips,
+    is_listed_differently,
+    reorder_actions,
+    reorder_stances,
+    shift_actions,
+    shift_stance,
+)
 from metagraph.graph.editing.marks import mark
 from metagraph.playback.planner import make_plan
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
@@ -115,3 +122,37 @@ def test_duplicates_are_read_again_with_their_file(toy, tmp_path):
     again = edits.add_clips(twice, [("wave.glb", 0, "new", toy.clip("wave"))])
     assert [e.digest for e in again.clips.values() if e.path == "wave.glb"] == ["new", "new"]
     assert len(again.clips) == len(twice.clips)
+
+
+def stances(project):
+    return [s.name for s in project.graphs["arms"].stances.values()]
+
+
+@pytest.mark.parametrize(
+    ("moving", "before", "after"),
+    [("far", "rest", "far rest up"), ("rest", None, "up far rest"), ("rest", "far", "up rest far")],
+)
+def test_a_stance_is_listed_in_front_of_another(project, toy, moving, before, after):
+    target = toy.id(project, before) if before else None
+    assert stances(reorder_stances(project, toy.id(project, moving), target)) == after.split()
+
+
+def test_a_stance_that_stands_there_or_is_gone_stays(project, toy):
+    assert reorder_stances(project, toy.id(project, "far"), None) is project
+    assert reorder_stances(project, toy.id(project, "rest"), toy.id(project, "up")) is project
+    assert reorder_stances(project, "gone", None) is project
+    assert shift_stance(project, toy.id(project, "rest"), -1) is project
+    assert stances(shift_stance(project, toy.id(project, "up"), 1)) == ["rest", "far", "up"]
+    assert stances(shift_stance(project, toy.id(project, "up"), -1)) == ["up", "rest", "far"]
+
+
+def test_the_order_of_stances_is_kept_in_the_file_and_the_journal_and_changes_no_plan(project, toy, tmp_path):
+    after = reorder_stances(project, toy.id(project, "far"), toy.id(project, "rest"))
+    assert is_listed_differently(project, after)
+    assert list(find_changes(project, after)["layers"]["arms"]["stances_order"]) == list(
+        after.graphs["arms"].stances
+    )
+    path = tmp_path / "p.metagraph.json"
+    save_project(after, path)
+    assert stances(open_project(path).project) == ["far", "rest", "up"]
+    assert make_plan(after, 30.0) == make_plan(project, 30.0)

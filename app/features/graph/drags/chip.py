@@ -1,4 +1,4 @@
-"""The drag of a stance's chip onto another, which merges the two."""
+"""The drag of a stance's chip: onto another, which merges the two, or between two, which lists it there."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from PySide6.QtCore import QPointF
 from PySide6.QtGui import QMouseEvent
 
 from app.features.graph.drags.host import GraphHost
-from app.features.graph.graph_drops import merge_at
 from app.features.graph.repoint import NOWHERE
+from app.features.graph.stance_drops import drop_stance_at
 from app.widgets.gesture import PressDrag, Reason
 
 
@@ -25,22 +25,21 @@ class ChipDrag(PressDrag):
         if not self.caught(at):
             return
         layout = self.host.layout_now()
-        hit = layout.hit(at, dragging=True)
-        drop = merge_at(self.host.document.project, self.stance, hit)
+        drop, hit, mark = drop_stance_at(self.host.document.project, layout, self.stance, at)
         chips = {c.stance: c.rect for c in layout.chips}
-        chip = chips.get(hit.ident or "") if hit.area == "chip" else None
-        own = chips.get(self.stance)
+        own, chip = chips.get(self.stance), chips.get(hit.ident or "")
         start = QPointF(own.center()) if own is not None else self.origin
         end = QPointF(chip.center()) if chip is not None else at
-        self.host.point(drop, hit if chip is not None else NOWHERE, (start, end))
+        self.host.point(drop, hit, None if mark is not None else (start, end), mark)
 
     def finish(self, at: QPointF) -> None:
         if not self.begun:
             return
-        hit = self.host.layout_now().hit(at, dragging=True)
-        drop = merge_at(self.host.document.project, self.stance, hit)
+        drop, _, _ = drop_stance_at(self.host.document.project, self.host.layout_now(), self.stance, at)
         self.host.point(None, NOWHERE, None)
-        if drop.possible:
+        if drop.possible and drop.reorder:
+            self.host.list_stance(self.stance, drop.before)
+        elif drop.possible:
             self.host.merge(self.stance, str(drop.stance))
 
     def cancel(self, reason: Reason) -> None:

@@ -220,6 +220,39 @@ def test_light_and_background_are_chosen_for_the_view_and_offered_for_rendering(
     dialog.close()
 
 
+def test_the_seat_is_chosen_and_kept_and_drawn(drive):
+    from app.project.files import SEATED
+    from preview.furniture import Chair
+    from preview.stool import Stool
+
+    drive.files.open(SEATED, template=True)
+    drive.wait(lambda: drive.preview.drawn is not None)
+    kinds = lambda: [type(a.figure) for a in drive.preview.scene().actors]  # noqa: E731
+    assert Stool in kinds()
+    menu = drive.shell.actions["seat"].menu()
+    menu.aboutToShow.emit()
+    next(a for a in menu.actions() if a.text() == "Chair").trigger()
+    assert Chair in kinds() and Stool not in kinds()
+    assert Watch().now.seat == "chair"
+    drive.session.watch.set(seat="none")
+    assert not {Chair, Stool} & set(kinds())
+    drive.session.watch.set(seat="stool")
+
+
+def test_the_studios_light_follows_the_camera_and_others_stay(shown):
+    panel = shown.preview
+    panel.frame_all()
+    shown.wait(lambda: panel.drawn is not None)
+    assert panel.scene().lamp is None
+    shown.do("see_left")
+    lamp = panel.scene().lamp
+    assert lamp is not None and np.degrees(lamp.angle) == pytest.approx(68.0)
+    assert panel.composed.lamp == lamp, "in a window of its own, too"
+    shown.session.watch.set(light="evening")
+    assert panel.scene().lamp is None
+    shown.session.watch.set(light="studio")
+
+
 def test_four_views_show_one_moment_from_four_sides_and_the_pose_is_made_once(shown):
     panel, session = shown.preview, shown.session
     session.transport.set_playing(False)
