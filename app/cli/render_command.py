@@ -23,6 +23,7 @@ from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
 
 if TYPE_CHECKING:
+    from app.stage.props import PropMeshes
     from metagraph.graph.timeline import Cut
     from metagraph.speech.captions import Caption
     from preview.scene import SceneTheme
@@ -100,6 +101,23 @@ def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
     return figure
 
 
+def load_props(shown: ShownPlayback, folder: Path) -> PropMeshes | None:
+    """Return the meshes of the props of all projects that are shown, and print a note for each that cannot be
+    drawn; None if there are none.
+    """
+    if not any(one.project.props for one in shown.everyone):
+        return None
+    from app.stage.props import PropMeshes, read_prop_meshes
+
+    out = PropMeshes(folder)
+    for one in shown.everyone:
+        found, problems = read_prop_meshes(one.project, one.folder or folder)
+        out.meshes.update(found.meshes)
+        for problem in problems:
+            print(f"note: {problem}", file=sys.stderr)
+    return out
+
+
 def read_size(text: str) -> tuple[int, int]:
     try:
         width, height = (int(x) for x in text.lower().split("x"))
@@ -118,6 +136,7 @@ def render_directed(
     direction: Direction = ((), ()),
     into: np.ndarray | None = None,
     seat: str = "stool",
+    props: PropMeshes | None = None,
 ) -> Iterator[np.ndarray]:
     """Yield pictures as `render_pictures` does, cut and with captions."""
     cuts, captions = direction
@@ -130,7 +149,7 @@ def render_directed(
         whole = make_whole_figure_camera(measure_bounds(seen, times), aspect, ASIDE)
         camera = lambda at: cutting.camera(seen, cuts, at, aspect) or Filmed(whole)  # noqa: E731
     if not captions:
-        yield from render_pictures(seen, times, size, look, camera, into, seat)
+        yield from render_pictures(seen, times, size, look, camera, into, seat, props)
         return
     from app.cli.screenless import make_screenless_application
     from app.stage.caption_paint import add_captions
@@ -138,7 +157,8 @@ def render_directed(
 
     # Text needs the fonts of an application, which a program without a window has not.
     application = make_screenless_application()
-    for at, picture in zip(times, render_pictures(seen, times, size, look, camera, into, seat), strict=True):
+    pictures = render_pictures(seen, times, size, look, camera, into, seat, props)
+    for at, picture in zip(times, pictures, strict=True):
         yield add_captions(picture, find_captions_at(captions, float(at)))
     del application
 
@@ -198,8 +218,17 @@ def run(options: Namespace) -> int:
         sound = mix_sound(shown, folder, options.seconds, options.start) if heard else None
         look = look_of(options.theme, options.light, options.background)
         direction = _direction(project, options, shown, folder, seen)
+        props = load_props(shown, folder)
         shot = Shot(
-            options.seconds, size, options.fps, options.frames, look, options.start, direction, options.seat
+            options.seconds,
+            size,
+            options.fps,
+            options.frames,
+            look,
+            options.start,
+            direction,
+            options.seat,
+            props,
         )
         draw_to(options.out, seen, shot, sound, _choose_progress(options))
     say(options, f"{options.out}", {"written": str(options.out)})
@@ -213,7 +242,7 @@ Direction = tuple["tuple[Cut, ...]", "tuple[Caption, ...]"]  # where the camera 
 class Shot:
     """How a performance is filmed: seconds, size in pixels, frames a second of a video or number of pictures
     of a contact sheet. start: second of the performance. direction: cuts and captions. seat: what
-    a character sits on, one of `preview.looks.SEATS`.
+    a character sits on, one of `preview.looks.SEATS`. props: the meshes of props.
     """
 
     seconds: float
@@ -224,6 +253,7 @@ class Shot:
     start: float = 0.0
     direction: Direction = ((), ())
     seat: str = "stool"
+    props: PropMeshes | None = None
 
 
 def _direction(
@@ -322,14 +352,18 @@ def draw_to(
         times = shot.start + np.arange(max(1, round(shot.seconds * shot.fps))) / shot.fps
 
         into = np.empty((height, width, 4), np.uint8)
-        drawn = render_directed(seen, times, shot.size, shot.look, shot.direction, into, shot.seat)
+        drawn = render_directed(
+            seen, times, shot.size, shot.look, shot.direction, into, shot.seat, shot.props
+        )
         write_video(out, drawn, shot.fps, shot.size, lambda count: progress(count, len(times)), sound=sound)
     elif out.suffix == ".png":
         from preview.sheet import make_contact_sheet, write_png
 
         times = shot.start + np.linspace(0, shot.seconds, max(2, shot.frames))
         small = (max(16, width * 2 * min(len(seen), 2) // 9), max(16, height * 5 // 9))
-        images = list(render_directed(seen, times, small, shot.look, shot.direction, seat=shot.seat))
+        images = list(
+            render_directed(seen, times, small, shot.look, shot.direction, None, shot.seat, shot.props)
+        )
         labels = [
             f"{t:.2f} s  {', '.join(filter(None, (_doing(shown, t) for _, shown in seen)))}".rstrip()
             for t in times

@@ -39,6 +39,7 @@ FEATURES = (
     "retargeting",
     "export",
     "render",
+    "props",
     "study",
     "guide",
     "welcome",

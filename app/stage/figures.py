@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.stage.playback_source import ShownPlayback
+from app.stage.props import PropFigures
 from app.stage.watch import Watch
 from app.translation import tr
 from metagraph.errors import FileError
@@ -26,7 +27,7 @@ REST = 1500  # milliseconds after a new figure, in which much else is made
 
 class Figures(QObject):
     """Reads and builds figures on a thread. `changed` is emitted if another figure should be drawn. `watch`
-    says whether stick figures are drawn in place of the default body.
+    says whether stick figures are drawn in place of the default body. `props` are what stands beside them.
     """
 
     changed = Signal()
@@ -46,6 +47,8 @@ class Figures(QObject):
         self._wanted: Key | None = None
         self._unreadable: Key | None = None
         self._whole: list[MeshFigure] = []  # figures whose levels of detail are still to be made
+        self.props = PropFigures(document, jobs, self)
+        self.props.changed.connect(self.changed)
         self._later = QTimer(self, singleShot=True, interval=REST)
         self._later.timeout.connect(self._make_levels)
         document.changed.connect(self._follow)

@@ -12,6 +12,7 @@ from app.stage.playback_source import ASIDE, ShownPlayback
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
+    from app.stage.props import PropMeshes
     from preview.scene import SceneTheme
 
 Seen = tuple[Any, ShownPlayback]  # a figure, and what it plays
@@ -47,10 +48,12 @@ def render_pictures(
     camera: Any = None,
     into: np.ndarray | None = None,
     seat: str = "stool",
+    props: PropMeshes | None = None,
 ) -> Iterator[np.ndarray]:
     """Yield one picture `[H, W, 4]` for each time. camera: a fixed camera, or a function from seconds to a
     camera; by default it sees everything. into: an array in which all pictures come, for callers that finish
-    with one before they ask for the next. seat: one of `preview.looks.SEATS`.
+    with one before they ask for the next. seat: one of `preview.looks.SEATS`. props: the meshes
+    of the projects' props, None to draw none.
     """
     from app.stage.cutting import Filmed
     from app.stage.stools import make_stools
@@ -81,23 +84,29 @@ def render_pictures(
     def scenes() -> Iterator[tuple[Scene, Any]]:
         for start in range(0, len(times), TOGETHER):
             some = times[start : start + TOGETHER]
-            acted = zip(*(_actors(figure, shown, some) for figure, shown in seen), strict=True)
+            acted = zip(*(_actors(figure, shown, some, props) for figure, shown in seen), strict=True)
             for at, actors in zip(some, acted, strict=True):
                 now = camera(float(at))
-                yield Scene((*actors, *seats), lamp=now.lamp), now.camera
+                yield Scene((*(a for some in actors for a in some), *seats), lamp=now.lamp), now.camera
 
     return draw_scenes(scenes(), len(times), size, theme, into)
 
 
-def _actors(figure: Any, shown: ShownPlayback, times: np.ndarray) -> list[Any]:
-    """Return a figure as it is shown at each of some times."""
+def _actors(
+    figure: Any, shown: ShownPlayback, times: np.ndarray, props: PropMeshes | None
+) -> list[tuple[Any, ...]]:
+    """Return a figure as it is shown at each of some times, with its props."""
+    from app.stage.props import make_prop_actors
     from preview.scene import Actor
 
     rotations, positions = _placed(shown, times)
     faces: list[Any] = [None] * len(times)
     if figure.morphs:
         faces = [figure.morph_weights(face) for face in shown.faces(times)]
-    return [Actor(figure, *at) for at in zip(rotations, positions, faces, strict=True)]
+    return [
+        (Actor(figure, *at), *(make_prop_actors(shown, props, at[:2]) if props is not None else ()))
+        for at in zip(rotations, positions, faces, strict=True)
+    ]
 
 
 def _placed(shown: ShownPlayback, times: Any) -> tuple[np.ndarray, np.ndarray]:

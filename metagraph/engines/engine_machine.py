@@ -262,13 +262,22 @@ def count_unrepeated(project: Project) -> int:
 
 
 def write_machine_glb(
-    project: Project, machines: tuple[Machine, ...], path: Path, character: CharacterMesh | None
-) -> None:
+    project: Project,
+    machines: tuple[Machine, ...],
+    path: Path,
+    character: CharacterMesh | None,
+    base: Path | None,
+) -> tuple[str, ...]:
     """Write the GLB engines' own state machines play: the joints' nodes stand in the base pose, against which
-    additive layers are taken, and every state has an animation of its name. Raises FileError.
+    additive layers are taken, and every state has an animation of its name. Return what to say of props that
+    cannot be read. base: the folder that their paths are relative to, None to leave them out. Raises
+    FileError.
     """
+    from metagraph.engines.placed_props import place_props
     from metagraph.formats.gltf.writer import ForEngine, write_glb
 
     assert project.skeleton is not None
-    engine = ForEngine(stand=anatomy.get_base_pose(project))
+    props, notes = place_props(project, base)
+    engine = ForEngine(stand=anatomy.get_base_pose(project), props=props)
     write_glb(path, make_animations(project, machines), character, engine=engine)
+    return notes

@@ -138,9 +138,11 @@ def write_project_files(
     progress: Callable[[int, int, str], None] | None = None,
     voices: LineSounds | None = None,
     compress: bool = False,
+    base: Path | None = None,
 ) -> Exported:
     """Write a project that has clips without checking it for errors. The arguments are those of
-    `export_project`. `voices` are copied into `lines/`, if they are given.
+    `export_project`. `voices` are copied into `lines/`, if they are given. `base` is the folder that the
+    props' paths are relative to, None to leave them out.
     """
     project = make_writable(project)
     tell = progress or (lambda done, total, words: None)
@@ -151,7 +153,7 @@ def write_project_files(
     names = make_names_unique([entry.name for entry in used])
     tell(0, 3, "clips")
     clips = [clip.dense for clip in list_exported_clips(project)]
-    notes = _write_glb(glb, clips, project, character, compress)
+    notes = _write_glb(glb, clips, project, character, compress, base)
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)
     document.glb_bytes, document.glb_sha256 = glb.stat().st_size, digest(glb)
@@ -229,8 +231,10 @@ def _write_glb(
     project: Project,
     character: Path | CharacterMesh | None,
     compress: bool,
+    base: Path | None,
 ) -> list[str]:
     """Write the GLB without hidden meshes; return what is not in it, in words."""
+    from metagraph.engines.placed_props import place_props
     from metagraph.formats.gltf.writer import ForEngine, write_glb
 
     skeleton = project.skeleton
@@ -247,8 +251,10 @@ def _write_glb(
         ) from None
     shown, notes = place_mesh_on(skeleton, character, project.hidden)
     presets = make_presets(shown.morphs, project.face.channels) if shown is not None else {}
-    write_glb(path, clips, shown, engine=ForEngine(expressions=presets), compress=compress)
-    return notes
+    props, unread = place_props(project, base)
+    engine = ForEngine(expressions=presets, props=props)
+    write_glb(path, clips, shown, engine=engine, compress=compress)
+    return [*notes, *unread]
 
 
 def place_mesh_on(

@@ -53,6 +53,7 @@ from metagraph.graph.conversation.model import Conversation, Side
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.face.takes import FACE_TAKE, is_face_take, put_on_body
 from metagraph.graph.model import ClipEntry, Project
+from metagraph.graph.prop import Prop
 from metagraph.graph.requests import Line
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Clip, ClipError
@@ -270,6 +271,7 @@ def move_projects(projects: Sequence[Project], old: Path | None, new: Path) -> l
             clips=once(project.clips, lambda c: {i: once(entry, move_entry) for i, entry in c.items()}),
             character=renew(project.character) if project.character else None,
             lines=once(project.lines, lambda _: _lines(project, renew)),
+            props=once(project.props, lambda _: _props(project, renew)),
             conversations=once(project.conversations, lambda _: _conversations(project, renew)),
         )
 
@@ -306,12 +308,15 @@ def _each_path(project: Project, renew: Callable[[str], str]) -> Project:
         clips=clips,
         character=character,
         lines=_lines(project, renew),
+        props=_props(project, renew),
         conversations=_conversations(project, renew),
     )
 
 
 def list_project_files(project: Project, folder: Path) -> tuple[Path, ...]:
-    """Return every file that a project in a folder names: clips, the character, sounds, other projects."""
+    """Return every file that a project in a folder names: clips, the character, props, sounds,
+    other projects.
+    """
     found: dict[Path, None] = {}
 
     def note(text: str) -> str:
@@ -344,6 +349,11 @@ def _lines(project: Project, renew: Callable[[str], str]) -> Mapping[str, Line]:
         i: msgspec.structs.replace(x, audio=x.audio and renew(x.audio), phones=x.phones and renew(x.phones))
         for i, x in found
     }
+
+
+def _props(project: Project, renew: Callable[[str], str]) -> Mapping[str, Prop]:
+    """Return the project's props with renewed paths."""
+    return {i: msgspec.structs.replace(x, path=renew(x.path)) for i, x in project.props.items()}
 
 
 def make_paths_absolute(project: Project, folder: Path) -> Project:

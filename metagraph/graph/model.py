@@ -16,6 +16,7 @@ from metagraph.graph.clip_mark import ClipMark
 from metagraph.graph.conversation.model import AUTO, Conversation
 from metagraph.graph.life import Face, Life
 from metagraph.graph.manual.machine import Alias, Link, Manual, State
+from metagraph.graph.prop import Prop
 from metagraph.graph.requests import Line, Performance, Point
 from metagraph.graph.timeline import Timeline
 from metagraph.graph.touch import Touch
@@ -408,16 +409,17 @@ class Project:
     """Everything that a project file holds.
 
     `roles` (role -> joint name) and `parts` (joint name -> body part) are corrections. `character` is the
-    path of the GLB to draw, relative to the project file, or None for the default body; `hidden` names its
-    meshes that are not drawn. `points` are named places to look at, in metres. `lines` is the dialogue that
-    an agent calls by id. `performances` and `conversations` are kept by id, and `timelines` holds their
-    markers and other notes by the same ids. `tiers` says for each annotation tier what it was last read as.
-    `notes` are texts by the id of their action, "" for the project's own. `marks` identify clips so that they
-    are found again, by clip id. `joint_maps` say how clips of other skeletons are retargeted, by the
-    `joint_map.make_fingerprint` of those. `language` is the code of the language that conversations are read
-    in ("de"), or "auto" to detect it from their words. `manual` has the state machines drawn by hand, by
-    layer. `voices` has the analysed sound of each line (`playback.life.voice.Voice`) that was read so far; it
-    is never saved. `touch` says whether contacts hold and hands stay outside the body.
+    path of the GLB to draw, relative to the project file, or None for the default body; `hidden` names
+    its meshes that are not drawn. `points` are named places to look at, in metres. `props` are things
+    that are drawn beside the character, by id. `lines` is the dialogue that an agent calls by id.
+    `performances` and `conversations` are kept by id, and `timelines` holds their markers and other notes
+    by the same ids. `tiers` says for each annotation tier what it was last read as. `notes` are texts by
+    the id of their action, "" for the project's own. `marks` identify clips so that they are found again,
+    by clip id. `joint_maps` say how clips of other skeletons are retargeted, by the
+    `joint_map.make_fingerprint` of those. `language` is the code of the language that conversations are
+    read in ("de"), or "auto" to detect it from their words. `manual` has the state machines drawn by
+    hand, by layer. `voices` has the analysed sound of each line (`playback.life.voice.Voice`) that was
+    read so far; it is never saved. `touch` says whether contacts hold and hands stay outside the body.
     """
 
     name: str = "untitled"
@@ -434,6 +436,7 @@ class Project:
     life: Life = field(default_factory=Life)
     face: Face = field(default_factory=Face)
     points: Mapping[str, Point] = field(default_factory=dict)
+    props: Mapping[str, Prop] = field(default_factory=dict)
     lines: Mapping[str, Line] = field(default_factory=dict)
     performances: Mapping[str, Performance] = field(default_factory=dict)
     conversations: Mapping[str, Conversation] = field(default_factory=dict)
@@ -476,6 +479,7 @@ class Project:
             or any(ident in m.states or ident in m.links or ident in m.aliases for m in machines)
             or ident in self.performances
             or ident in self.conversations
+            or ident in self.props
             or any(ident == marker.id for t in self.timelines.values() for marker in t.markers)
         )
 

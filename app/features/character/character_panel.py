@@ -25,6 +25,7 @@ from app.stage.navigation import get_navigation
 from app.stage.performance import StagePerformance
 from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
+from app.stage.props import make_prop_actors
 from app.stage.session import StageSession
 from app.stage.stools import make_stools
 from app.translation import format_number, tr, tr_noop
@@ -243,6 +244,7 @@ class PreviewPanel(QWidget):
     def scene(self) -> Scene:
         """Return what is drawn now; called by the view when it paints."""
         shown, seconds, actors = self.performance.shown, self.session.transport.seconds, []
+        props: list[Actor] = []
         for one in shown.everyone:
             pose, skeleton = one.pose(seconds), one.skeleton
             figure = self.figures.of(one) if skeleton is not None else None
@@ -251,6 +253,7 @@ class PreviewPanel(QWidget):
             rotations, positions = skeleton.globals(pose)
             if one.stand is not None:
                 rotations, positions = one.stand.placed(rotations, positions)
+            props += make_prop_actors(one, self.figures.props.meshes, (rotations, positions))
             if one is shown:
                 self._last = (figure, rotations, positions)
             morphs = figure.morph_weights(one.morphs(seconds)) if figure.morphs else None
@@ -262,7 +265,7 @@ class PreviewPanel(QWidget):
         kind = self.session.watch.now.seat
         seats = (seat for one in shown.everyone for seat in make_stools(one, kind))
         behind = self.reference.picture if self.reference.behind else None
-        scene = Scene((*actors, *seats), picture=behind)
+        scene = Scene((*actors, *props, *seats), picture=behind)
         shape = round(self.view.width() / max(1, self.view.height()), 1)  # frame it again for another size
         solid = Scene(tuple(actor for actor in actors if actor.opacity >= 1))  # ghosts do not move the camera
         framed = (*(actor.figure for actor in solid.actors), *(one.stand for one in shown.everyone), shape)

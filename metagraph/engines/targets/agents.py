@@ -23,7 +23,7 @@ from metagraph.engines.engine_machine import (
     write_machine_glb,
 )
 from metagraph.engines.engine_names import name_files, write_word
-from metagraph.engines.targets.losses import MACHINE
+from metagraph.engines.targets.losses import MACHINE, PROPS
 from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.errors import describe_error
@@ -211,7 +211,7 @@ def write_sumerian(order: ExportOrder) -> ExportedFiles:
     built = list_machines(order.project)
     table, glb = order.folder / "gesture.json", order.folder / f"{order.stem}.glb"
     body, notes = find_ordered_mesh(order)
-    write_machine_glb(order.project, built, glb, body)
+    notes += write_machine_glb(order.project, built, glb, body, order.contents.base)
     write_atomically(table, json.dumps(make_gesture_file(order.project, built), indent=1).encode())
     return ExportedFiles((table, glb), notes)
 
@@ -243,6 +243,7 @@ TARGETS = (
                 ),
                 _unsaid,
             ),
+            PROPS,
         ),
         group=phrase("Agents"),
     ),
@@ -255,6 +256,7 @@ TARGETS = (
             *MACHINE,
             Loss(phrase("no transitions or fidgets: SmartBody moves between postures by itself")),
             Loss(phrase("a gesture has only one lexeme and one type: its first two tags")),
+            PROPS,
         ),
         _ALONE,
         phrase("Agents"),

@@ -246,7 +246,7 @@ def write(order: ExportOrder) -> ExportedFiles:
     glb = order.folder / f"{stem}.glb"
     body, notes = find_ordered_mesh(order)
     order.tell(0, 2, "clips")
-    write_machine_glb(project, built, glb, body)
+    notes += write_machine_glb(project, built, glb, body, order.contents.base)
     order.tell(1, 2, "trees")
     texts = {
         f"{stem}.tres": write_animation_tree(project, built, 4),

@@ -15,7 +15,7 @@ from typing import Any
 
 from metagraph.common.wording import phrase
 from metagraph.engines.engine_machine import EngineState, Machine, list_machines, make_animations
-from metagraph.engines.targets.losses import MACHINE
+from metagraph.engines.targets.losses import MACHINE, PROPS
 from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.formats.atomic import write_atomically
@@ -257,6 +257,7 @@ TARGETS = (
         write,
         (
             *MACHINE,
+            PROPS,
             Loss(phrase("layers are not added: body, arms and head each move only their own joints")),
             Loss(phrase("no blends: each animation stops where the next one starts")),
         ),

@@ -53,6 +53,10 @@ CONVERSATIONS = Loss(
     ),
     lambda project: len(project.conversations),
 )
+PROPS = Loss(
+    plural_phrase("{count} prop is left out", "{count} props are left out", 0),
+    lambda project: len(project.props),
+)
 PERFORMANCES = Loss(
     plural_phrase(
         "{count} saved performance is left out",

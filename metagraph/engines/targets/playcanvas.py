@@ -93,7 +93,7 @@ def write(order: ExportOrder) -> ExportedFiles:
     graph, glb = order.folder / f"{order.stem}.animstategraph.json", order.folder / f"{order.stem}.glb"
     body, notes = find_ordered_mesh(order)
     order.tell(0, 2, "clips")
-    write_machine_glb(order.project, built, glb, body)
+    notes += write_machine_glb(order.project, built, glb, body, order.contents.base)
     order.tell(1, 2, "graph")
     write_atomically(
         graph, json.dumps(make_anim_state_graph(order.project, built), indent=1, ensure_ascii=False).encode()

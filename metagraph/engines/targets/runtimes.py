@@ -25,7 +25,14 @@ def write_with_sounds(order: ExportOrder, imported: Imported | None = None) -> E
     given = order.contents
     voices = LineSounds(given.base, given.chosen, imported) if given.base is not None else None
     made = write_project_files(
-        order.project, order.folder, given.expanded, given.character, order.tell, voices, given.compress
+        order.project,
+        order.folder,
+        given.expanded,
+        given.character,
+        order.tell,
+        voices,
+        given.compress,
+        given.base,
     )
     return ExportedFiles((made.json, made.glb, *made.sounds), made.warnings)
 

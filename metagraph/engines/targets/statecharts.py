@@ -176,7 +176,7 @@ def _write(order: ExportOrder, suffix: str, text: bytes, built: tuple[Machine, .
     chart, glb = order.folder / f"{order.stem}.{suffix}", order.folder / f"{order.stem}.glb"
     body, notes = find_ordered_mesh(order)
     order.tell(0, 2, "clips")
-    write_machine_glb(order.project, built, glb, body)
+    notes += write_machine_glb(order.project, built, glb, body, order.contents.base)
     order.tell(1, 2, "chart")
     write_atomically(chart, text)
     order.tell(2, 2, "done")

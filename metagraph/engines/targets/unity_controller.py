@@ -18,7 +18,7 @@ import numpy as np
 from metagraph.common.wording import phrase
 from metagraph.engines.engine_machine import Arrow, EngineState, Machine, list_machines, make_animations
 from metagraph.engines.engine_names import name_files
-from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
+from metagraph.engines.targets.losses import CROSSFADE, MACHINE, PROPS, WEIGHTS
 from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.engines.targets.unity_clips import Moving, format_clip_asset
@@ -413,7 +413,7 @@ TARGETS = (
             "and the mesh as a GLB"
         ),
         write,
-        (*MACHINE, WEIGHTS, CROSSFADE, MOMENT),
+        (*MACHINE, WEIGHTS, CROSSFADE, MOMENT, PROPS),
         UNTRIED,
     ),
 )

@@ -19,7 +19,7 @@ from metagraph.common.files import read_file
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.engines.engine_machine import count_unrepeated, make_clip_as_played
 from metagraph.engines.export_error import ExportError
-from metagraph.engines.targets.losses import PERFORMANCES
+from metagraph.engines.targets.losses import PERFORMANCES, PROPS
 from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.errors import FileError
@@ -249,6 +249,7 @@ TARGETS = (
             Loss(phrase("no life layers: the avatar's program does breathing, gaze, blinks and lip sync")),
             Loss(UNREPEATED, count_unrepeated),
             PERFORMANCES,
+            PROPS,
         ),
     ),
 )

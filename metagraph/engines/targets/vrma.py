@@ -19,7 +19,7 @@ from metagraph.common.file_names import make_file_stems
 from metagraph.common.wording import phrase
 from metagraph.engines.engine_machine import count_unrepeated, make_clip_as_played
 from metagraph.engines.export_error import ExportError
-from metagraph.engines.targets.losses import PERFORMANCES
+from metagraph.engines.targets.losses import PERFORMANCES, PROPS
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.engines.targets.vrm import UNREPEATED, find_vrm_bones, find_vrm_pose
 from metagraph.formats.atomic import write_atomically
@@ -203,6 +203,7 @@ TARGETS = (
             Loss(phrase("no life layers: the avatar's program does breathing, gaze, blinks and lip sync")),
             Loss(UNREPEATED, count_unrepeated),
             PERFORMANCES,
+            PROPS,
         ),
     ),
 )

@@ -14,6 +14,7 @@ from metagraph.common.pictures import read_picture_size
 from metagraph.errors import FileError
 from metagraph.formats.gltf.file import Gltf
 from metagraph.formats.gltf.morphs import read_morph_names
+from metagraph.formats.gltf.placed_props import is_prop
 from metagraph.formats.gltf.skeleton import GltfRig
 from metagraph.formats.gltf.values import Primitive
 from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
@@ -48,7 +49,7 @@ def read_character_mesh(gltf: Gltf, rig: GltfRig) -> CharacterMesh:
     names_of: dict[str, None] = {}
     for node in _scene_nodes(gltf, rig):
         index = doc.nodes[node].mesh
-        if index is None:
+        if index is None or is_prop(doc.nodes[node]):
             continue
         mesh = gltf.item(doc.meshes, index, "mesh", f"node {node} '{doc.nodes[node].name}'")
         called = _free(doc.nodes[node].name or mesh.name or f"mesh {index}", names_of)

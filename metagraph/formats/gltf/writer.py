@@ -25,6 +25,8 @@ from metagraph.formats.gltf.binary import (
     make_glb_bytes,
 )
 from metagraph.formats.gltf.key_thinning import find_kept_frames
+from metagraph.formats.gltf.materials import add_materials
+from metagraph.formats.gltf.placed_props import PlacedProp, add_props
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.clip import Clip
@@ -75,13 +77,15 @@ class ForEngine:
     `stand` is the pose of the joints' nodes, None for the rest pose; the skin stays bound to the rest pose,
     and the scene gets a name, with which paths begin in some engines. `moved` has the joints that each clip
     moves, by the clip's name; None for all. `extensions` are the document's, by name. `expressions` is name
-    -> morph target -> weight, written beside the targets' names in the mesh's `extras`.
+    -> morph target -> weight, written beside the targets' names in the mesh's `extras`. `props` are nodes of
+    their own.
     """
 
     stand: Pose | None = None
     moved: Mapping[str, Collection[int]] | None = None
     extensions: Mapping[str, Any] | None = None
     expressions: Mapping[str, Mapping[str, float]] | None = None
+    props: tuple[PlacedProp, ...] = ()
 
 
 SMALL_KEYS = Keys()
@@ -114,6 +118,7 @@ def write_glb(
     shown = character if character is not None and len(character.triangles) else None
     file.add_body(shown)
     file.add_clips(clips)
+    add_props(file.document, file.body, engine.props)
     file.add_extensions(packed_mesh=compress and shown is not None)
     write_atomically(path, make_glb_bytes(file.document, file.body))
 
@@ -260,36 +265,7 @@ def _add_character(document: dict[str, Any], body: BinaryChunk, character: Chara
     if targets:
         mesh["weights"] = [0.0] * len(targets)
         mesh["extras"] = {"targetNames": list(character.morphs)}
-    images: list[dict[str, Any]] = []
-    known: dict[bytes, int] = {}
-    materials = []
-
-    def texture(image: bytes) -> int:
-        if image not in known:
-            known[image] = len(images)
-            kind = "image/png" if image[:4] == b"\x89PNG" else "image/jpeg"
-            images.append({"bufferView": body.view(image), "mimeType": kind})
-        return known[image]
-
-    for material in character.materials:
-        pbr: dict[str, Any] = {
-            "baseColorFactor": list(material.color),
-            "metallicFactor": 0.0,
-            "roughnessFactor": material.roughness,
-        }
-        if material.image is not None:
-            pbr["baseColorTexture"] = {"index": texture(material.image)}
-        value: dict[str, Any] = {"name": material.name, "pbrMetallicRoughness": pbr}
-        if material.grain is not None and character.grain_uvs is not None:
-            value["normalTexture"] = {"index": texture(material.grain), "texCoord": 1}
-        if material.double_sided:
-            value["doubleSided"] = True
-        materials.append(value)
-    if materials:
-        document["materials"] = materials
-    if images:
-        document["images"] = images
-        document["textures"] = [{"source": i} for i in range(len(images))]
+    add_materials(document, body, character.materials, character.grain_uvs is not None)
     document["meshes"] = [mesh]
     document["nodes"].append({"name": character.name, "mesh": 0, "skin": 0})
     return len(document["nodes"]) - 1

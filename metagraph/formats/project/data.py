@@ -62,6 +62,7 @@ from metagraph.graph.model import (
     Stance,
     Timing,
 )
+from metagraph.graph.prop import Prop
 from metagraph.graph.requests import explain_invalid_ask
 from metagraph.graph.timeline import Timeline
 from metagraph.graph.touch import Touch
@@ -189,6 +190,7 @@ STRUCTS: dict[str, Any] = {
     "life": Life,
     "face": Face,
     "points": dict[str, Point],
+    "props": dict[str, Prop],
     "lines": dict[str, Line],
     "performances": dict[str, Performance],
     "conversations": dict[str, Conversation],
@@ -255,13 +257,17 @@ def _closed(name: str | None) -> str | None:
 
 
 def _with_closed_paths(value: Any) -> Any:
-    """Return lines and conversations without paths that are not to be opened; anything else as it is."""
+    """Return lines, props and conversations without paths that are not to be opened; anything else as it
+    is.
+    """
     if not isinstance(value, Mapping):
         return value
-    return {k: _with_closed(v) if isinstance(v, Line | Conversation) else v for k, v in value.items()}
+    return {k: _with_closed(v) if isinstance(v, Line | Prop | Conversation) else v for k, v in value.items()}
 
 
-def _with_closed(value: Line | Conversation) -> Line | Conversation:
+def _with_closed(value: Line | Prop | Conversation) -> Line | Prop | Conversation:
+    if isinstance(value, Prop):
+        return msgspec.structs.replace(value, path=close_path(value.path))
     if isinstance(value, Conversation):
         return msgspec.structs.replace(value, sides=tuple(map(_with_closed_side, value.sides)))
     return msgspec.structs.replace(value, audio=_closed(value.audio), phones=_closed(value.phones))

@@ -22,7 +22,7 @@ _GONE: Any = object()
 _MADE = re.compile(r"[a-z]+\d+")  # ids that the program makes
 # Values that are one thing however many fields they have: parts of two would not fit each other.
 _WHOLE = ("markov", "joint_maps", "conversations", "points")
-_NAMED = ("lines", "performances", "timelines", "notes", "marks", "tiers", "labels")
+_NAMED = ("lines", "props", "performances", "timelines", "notes", "marks", "tiers", "labels")
 _SETS = ("tags", "joints", "hidden", "locked")  # lists in which the order says nothing
 _TIMES = frozenset(f.name for f in fields(Timing))
 _TEXTS = ("name", "text", "path", "sha256", "notes", "note", "made_by")  # texts that may look like ids
@@ -131,6 +131,7 @@ _KINDS = {
     "conversations": phrase("conversation"),
     "timelines": phrase("timeline"),
     "points": phrase("point"),
+    "props": phrase("prop"),
     "notes": phrase("note"),
     "marks": phrase("mark"),
     "tiers": phrase("tier"),

@@ -17,6 +17,7 @@ _NAMED = {
     "clips": phrase("Clip"),
     "lines": phrase("Line"),
     "points": phrase("Point"),
+    "props": phrase("Prop"),
     "performances": phrase("Performance"),
     "conversations": phrase("Conversation"),
 }

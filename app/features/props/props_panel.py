@@ -1,0 +1,322 @@
+"""The props panel: which props there are, where they stand or which joint carries them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import msgspec
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import (
+    QBoxLayout,
+    QFileDialog,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QListWidget,
+    QListWidgetItem,
+    QPushButton,
+    QScrollArea,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.props.floor_plan import FloorPlan
+from app.look.names import make_readable_name
+from app.project.document import Document
+from app.project.jobs import Jobs
+from app.stage.figures import Figures
+from app.stage.session import StageSession
+from app.translation import tr, tr_error, tr_noop
+from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
+from metagraph.errors import FileError
+from metagraph.formats.props.reader import ENDINGS
+from metagraph.formats.store import make_path_for_project
+from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing.props import add_prop, find_palm, remove_prop, set_prop
+from metagraph.graph.model import Project
+from metagraph.graph.prop import LARGEST, Prop
+from metagraph.motion.roles import find_roles
+
+SAMPLES = Path(__file__).resolve().parents[3] / "sample_clips" / "props"
+FIELDS = (
+    ("at", 0, tr_noop("Right"), " m", 0.05, 3),
+    ("at", 1, tr_noop("Up"), " m", 0.05, 3),
+    ("at", 2, tr_noop("Front"), " m", 0.05, 3),
+    ("turn", 0, tr_noop("Tip"), "°", 5.0, 1),
+    ("turn", 1, tr_noop("Turn"), "°", 5.0, 1),
+    ("turn", 2, tr_noop("Roll"), "°", 5.0, 1),
+)
+WIDE = 560  # pixels from which the parts are side by side
+HANDS = ("right_hand", "left_hand", "head")  # roles of joints that are offered before the other joints
+
+
+class PropsPanel(QWidget):
+    """Lists the project's props, and edits the chosen one."""
+
+    def __init__(
+        self, document: Document, session: StageSession, figures: Figures, jobs: Jobs, parent: QWidget
+    ) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.figures, self.jobs = document, session, figures, jobs
+        self.current = ""
+        self._showing = False
+        self.add_button = QPushButton(tr("Add a prop…"), self)
+        self.add_button.clicked.connect(self.ask)
+        self.remove_button = QPushButton(tr("Remove"), self)
+        self.remove_button.clicked.connect(self.remove)
+        self.list = QListWidget(self)
+        self.list.setAccessibleName(tr("Props"))
+        self.list.currentItemChanged.connect(lambda item, _: self._choose(item))
+        self.plan = FloorPlan(session, figures.props.meshes, self.change, self)
+        self.plan.chosen.connect(self.choose)
+        self.empty = QLabel(
+            tr(
+                "A prop is a desk, a cup or a wall: an OBJ, STL, PLY, OFF or GLB file. Add one of the "
+                "samples, or drop a file of yours on the window."
+            ),
+            self,
+        )
+        self.empty.setWordWrap(True)
+        self.empty.setProperty("dim", True)
+        self._lay_out()
+        document.changed.connect(self._follow)
+        document.loaded.connect(self.refresh)
+        figures.props.changed.connect(self.plan.update)
+        session.look.changed.connect(self.plan.update)
+        self.refresh()
+
+    def _lay_out(self) -> None:
+        buttons = QHBoxLayout()
+        buttons.addWidget(self.add_button)
+        buttons.addWidget(self.remove_button)
+        buttons.addStretch(1)
+        self.fields = QWidget(self)
+        grid = QGridLayout(self.fields)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setHorizontalSpacing(8)
+        self.joint = ComboBox(self.fields)
+        self.joint.setAccessibleName(tr("Carried by"))
+        self.joint.activated.connect(lambda _: self._set_joint())
+        grid.addWidget(QLabel(tr("Carried by"), self.fields), 0, 0)
+        grid.addWidget(self.joint, 0, 1, 1, 3)
+        self.numbers: dict[tuple[str, int], DoubleSpinBox] = {}
+        for n, (name, place, words, unit, step, decimals) in enumerate(FIELDS):
+            row, column = 1 + n % 3, 2 * (n // 3)
+            self._add_number(grid, row, column, (name, place), tr(words), unit, step, decimals)
+        self._add_number(grid, 4, 0, ("scale", 0), tr("Size"), " ×", 0.1, 3)
+        self.numbers["scale", 0].setRange(0.001, LARGEST)
+        grid.setColumnStretch(1, 1)
+        grid.setColumnStretch(3, 1)
+        grid.setRowStretch(5, 1)
+        left = QVBoxLayout()
+        left.setSpacing(8)
+        left.addLayout(buttons)
+        left.addWidget(self.empty)
+        left.addWidget(self.list, 1)
+        inner = QWidget(self)
+        self._layout = QBoxLayout(QBoxLayout.Direction.TopToBottom, inner)
+        self._layout.setContentsMargins(12, 8, 12, 8)
+        self._layout.setSpacing(12)
+        self._layout.addLayout(left, 2)
+        self._layout.addWidget(self.plan, 3)
+        self._layout.addWidget(self.fields, 2)
+        area = QScrollArea(self)
+        area.setWidgetResizable(True)
+        area.setWidget(inner)
+        outer = QVBoxLayout(self)
+        outer.setContentsMargins(0, 0, 0, 0)
+        outer.addWidget(area)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Where it is wide, its parts are side by side."""
+        super().resizeEvent(event)
+        wide = event.size().width() >= WIDE
+        directions = QBoxLayout.Direction
+        self._layout.setDirection(directions.LeftToRight if wide else directions.TopToBottom)
+
+    def _add_number(
+        self,
+        grid: QGridLayout,
+        row: int,
+        column: int,
+        key: tuple[str, int],
+        words: str,
+        unit: str,
+        step: float,
+        decimals: int,
+    ) -> None:
+        box = DoubleSpinBox(
+            self.fields, minimum=-LARGEST, maximum=LARGEST, singleStep=step, decimals=decimals, suffix=unit
+        )
+        box.setKeyboardTracking(False)
+        box.setAccessibleName(words)
+        box.valueChanged.connect(lambda value: self._set_number(key, value))
+        self.numbers[key] = box
+        grid.addWidget(QLabel(words, self.fields), row, column)
+        grid.addWidget(box, row, column + 1)
+
+    # --- showing
+
+    @property
+    def prop(self) -> Prop | None:
+        """The chosen prop."""
+        return self.document.project.props.get(self.current)
+
+    def _follow(self, before: Project, after: Project) -> None:
+        if before.props is not after.props or before.skeleton is not after.skeleton:
+            self.refresh()
+
+    def refresh(self) -> None:
+        """Show the props as they are now."""
+        props = self.document.project.props
+        if self.current not in props:
+            self.current = next(iter(props), "")
+        self._showing = True
+        self.list.clear()
+        for ident, prop in props.items():
+            words = tr("{name}, in {joint}", name=prop.name, joint=make_readable_name(prop.joint))
+            item = QListWidgetItem(words if prop.joint else prop.name, self.list)
+            item.setData(Qt.ItemDataRole.UserRole, ident)
+            item.setToolTip(prop.path)
+            if ident == self.current:
+                self.list.setCurrentItem(item)
+        self._show_fields()
+        self._showing = False
+        usable = self.document.project.skeleton is not None
+        self.add_button.setEnabled(usable)
+        self.remove_button.setEnabled(bool(self.current))
+        for widget in (self.list, self.plan, self.fields):
+            widget.setVisible(bool(props))
+        self.empty.setVisible(not props)
+        self.plan.set_current(self.current)
+
+    def _show_fields(self) -> None:
+        prop = self.prop or Prop(name="", path="")
+        for (name, place), box in self.numbers.items():
+            value = getattr(prop, name)
+            box.setValue(value if name == "scale" else value[place])
+        skeleton = self.document.project.skeleton
+        names = list(skeleton.names) if skeleton is not None else []
+        roles = find_roles(skeleton) if skeleton is not None else {}
+        first = [names[roles[role]] for role in HANDS if role in roles]
+        self.joint.clear()
+        self.joint.addItem(tr("Nobody: it stands"), "")
+        for joint in [*first, *(name for name in names if name not in first)]:
+            self.joint.addItem(make_readable_name(joint), joint)
+        self.joint.choose(prop.joint)
+
+    # --- choosing and editing
+
+    def _choose(self, item: QListWidgetItem | None) -> None:
+        if item is not None and not self._showing:
+            self.choose(str(item.data(Qt.ItemDataRole.UserRole)))
+
+    def choose(self, ident: str) -> None:
+        """Choose a prop by its id; "" chooses none other."""
+        if ident and ident != self.current:
+            self.current = ident
+            self.refresh()
+
+    def change(self, ident: str, prop: Prop, ends: bool) -> None:
+        """Change a prop. ends: whether what follows is another step."""
+        self._edit(tr("Move {name}", name=prop.name), ident, prop, tr("prop {ident}", ident=ident))
+        if ends:
+            self.document.finish_merging()
+
+    def _edit(self, words: str, ident: str, prop: Prop, merge: str | None = None) -> None:
+        try:
+            self.document.edit(words, lambda project: set_prop(project, ident, prop), merge=merge)
+        except EditError as error:
+            self.document.failed.emit(tr_error(error))
+
+    def _set_number(self, key: tuple[str, int], value: float) -> None:
+        prop = self.prop
+        if prop is None or self._showing:
+            return
+        name, place = key
+        if name == "scale":
+            self._edit(
+                tr("Resize {name}", name=prop.name), self.current, msgspec.structs.replace(prop, scale=value)
+            )
+            return
+        values = list(getattr(prop, name))
+        values[place] = round(value, 4)
+        changed = msgspec.structs.replace(prop, **{name: tuple(values)})
+        self._edit(tr("Move {name}", name=prop.name), self.current, changed)
+
+    def _set_joint(self) -> None:
+        prop, joint = self.prop, str(self.joint.currentData() or "")
+        if prop is None or joint == prop.joint:
+            return
+        at = find_palm(self.document.project, joint) if joint else (0.0, 0.0, 0.5)
+        changed = msgspec.structs.replace(prop, joint=joint, at=at, turn=(0.0, 0.0, 0.0))
+        words = tr("Carry {name}", name=prop.name) if joint else tr("Put {name} down", name=prop.name)
+        self._edit(words, self.current, changed)
+
+    def remove(self) -> None:
+        """Remove the chosen prop."""
+        prop, ident = self.prop, self.current
+        if prop is not None:
+            self.document.edit(
+                tr("Remove {name}", name=prop.name), lambda project: remove_prop(project, ident)
+            )
+
+    def ask(self) -> None:
+        """Ask which files to add."""
+        kinds = tr("Props ({endings})", endings=" ".join(f"*{ending}" for ending in ENDINGS))
+        start = str(SAMPLES if SAMPLES.is_dir() else self.document.folder or Path.home())
+        names, _ = QFileDialog.getOpenFileNames(self, tr("Add props"), start, kinds)
+        if names:
+            self.add([Path(name) for name in names])
+
+    def add(self, paths: Sequence[Path]) -> None:
+        """Read files on a thread, and add those that can be drawn as one step; say why others cannot."""
+        from metagraph.formats.props.reader import read_prop
+
+        def read(_: object) -> tuple[list[Path], list[FileError]]:
+            good, bad = [], []
+            for path in paths:
+                try:
+                    read_prop(path)
+                except FileError as error:
+                    bad.append(error)
+                else:
+                    good.append(path)
+            return good, bad
+
+        def place(result: tuple[list[Path], list[FileError]]) -> None:
+            good, bad = result
+            if good:
+                self._place(good)
+            for error in bad:
+                self.document.failed.emit(tr_error(error))
+
+        self.jobs.start("props", read, place, lambda error: self.document.failed.emit(tr_error(error)))
+
+    def _place(self, paths: Sequence[Path]) -> None:
+        """Add props in a row to the character's left, each where none stands."""
+        added: list[str] = []
+
+        def edit(project: Project) -> Project:
+            for path in paths:
+                at = (0.8, 0.0, 0.0)
+                while any(other.at == at for other in project.props.values()):
+                    at = (round(at[0] + 0.4, 3), 0.0, 0.0)
+                prop = Prop(name=path.stem, path=make_path_for_project(path, self.document.folder), at=at)
+                project, ident = add_prop(project, prop)
+                added.append(ident)
+            return project
+
+        words = (
+            tr("Add {name}", name=paths[0].stem)
+            if len(paths) == 1
+            else tr("Add {count} props", count=len(paths))
+        )
+        try:
+            self.document.edit(words, edit)
+        except EditError as error:
+            self.document.failed.emit(tr_error(error))
+            return
+        self.choose(added[-1])

@@ -1,0 +1,144 @@
+"""Draw the props of a project: things that stand beside the character or that its joints carry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject, Signal
+
+from app.project.document import Document
+from app.project.jobs import Jobs
+from app.stage.playback_source import ShownPlayback
+from metagraph.common.network_paths import is_closed
+from metagraph.errors import FileError
+from metagraph.graph.model import Project
+from metagraph.graph.prop import make_turn
+from metagraph.motion import rotation
+from metagraph.motion.character_mesh import CharacterMesh
+from preview.figure import SkinnedFigure
+
+if TYPE_CHECKING:
+    from preview.scene import Actor
+
+
+@dataclass
+class PropMeshes:
+    """What the files of props hold, by their whole paths, and the figures that draw them. Each size of a prop
+    has its own figure; `keep_used` forgets the sizes that nothing has any more. folder: what paths in a
+    project are relative to, unless what is shown says it.
+    """
+
+    folder: Path = Path()
+    meshes: dict[Path, CharacterMesh] = field(default_factory=dict)
+    _figures: dict[tuple[Path, float], SkinnedFigure] = field(default_factory=dict)
+
+    def find_figure(self, place: Path, scale: float) -> SkinnedFigure | None:
+        """Return the figure of a prop's file at a scale; None for a file that is not among them."""
+        mesh = self.meshes.get(place)
+        if mesh is None:
+            return None
+        key = place, scale
+        if key not in self._figures:
+            self._figures[key] = SkinnedFigure(replace(mesh, positions=mesh.positions * np.float32(scale)))
+        return self._figures[key]
+
+    def keep_used(self, used: set[tuple[Path, float]]) -> None:
+        """Forget all figures but some, and the files that none of those is of."""
+        self._figures = {key: figure for key, figure in self._figures.items() if key in used}
+        places = {place for place, _ in used}
+        self.meshes = {place: mesh for place, mesh in self.meshes.items() if place in places}
+
+
+class PropFigures(QObject):
+    """Reads the document's props on a thread, each file once. `changed` is emitted when one is ready, `told`
+    has the words for one that cannot be read, and for what was assumed of another.
+    """
+
+    changed = Signal()
+    told = Signal(str)
+
+    def __init__(self, document: Document, jobs: Jobs, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.document, self.jobs = document, jobs
+        self.meshes = PropMeshes()
+        self._asked: set[Path] = set()  # read, being read, or refused
+        document.changed.connect(self._follow)
+
+    def _follow(self, before: Project, after: Project) -> None:
+        if before.props is after.props:
+            return
+        folder = self.meshes.folder = self.document.folder or Path()
+        used = {(folder / prop.path, prop.scale) for prop in after.props.values()}
+        self.meshes.keep_used(used)
+        places = {place for place, _ in used}
+        self._asked &= places
+        for prop in after.props.values():
+            place = folder / prop.path
+            if place not in self._asked and not is_closed(prop.path):
+                self._asked.add(place)
+                self._read(place)
+        self.changed.emit()
+
+    def _read(self, place: Path) -> None:
+        from metagraph.formats.props.reader import read_prop
+
+        def keep(mesh: CharacterMesh) -> None:
+            self.meshes.meshes[place] = mesh
+            self.changed.emit()
+            if mesh.notes:
+                self.told.emit(f"{place.name}: {'; '.join(mesh.notes)}")
+
+        self.jobs.start(
+            f"prop {place}",
+            lambda _: read_prop(place),
+            keep,
+            lambda error: self.told.emit(str(error)),
+            quick=True,
+        )
+
+
+def read_prop_meshes(project: Project, folder: Path) -> tuple[PropMeshes, list[str]]:
+    """Return the meshes of a project's props, and what to say of those that cannot be drawn."""
+    from metagraph.formats.props.reader import read_prop
+
+    out = PropMeshes(folder)
+    problems: list[str] = []
+    for path in dict.fromkeys(prop.path for prop in project.props.values() if not is_closed(prop.path)):
+        try:
+            out.meshes[folder / path] = read_prop(folder / path)
+        except FileError as error:
+            problems.append(str(error))
+    return out, problems
+
+
+def make_prop_actors(
+    shown: ShownPlayback, meshes: PropMeshes, placed: tuple[np.ndarray, np.ndarray]
+) -> Iterator[Actor]:
+    """Yield the props of the project that is shown, at one moment. placed: the character's global rotations
+    `[J, 4]` and positions `[J, 3]`, where it stands. A clip that plays alone has none; a prop whose joint the
+    character has not, and one whose mesh is not there, is left out. Of several speakers the first has what
+    stands.
+    """
+    from preview.scene import Actor
+
+    skeleton = shown.skeleton
+    if shown.clip is not None or skeleton is None:
+        return
+    folder = shown.folder or meshes.folder
+    for prop in shown.project.props.values():
+        figure = meshes.find_figure(folder / prop.path, prop.scale)
+        if figure is None or (prop.joint and prop.joint not in skeleton) or (not prop.joint and shown.side):
+            continue
+        turn, at = np.array(make_turn(prop)), np.asarray(prop.at, float)
+        if prop.joint:
+            joint = skeleton.names.index(prop.joint)
+            base, origin = placed[0][joint], placed[1][joint]
+            turn, at = rotation.multiply(base, turn), origin + rotation.rotate_vectors(base, at)
+        elif shown.stand is not None:
+            turns, places = shown.stand.placed(turn[None], at[None])
+            turn, at = turns[0], places[0]
+        yield Actor(figure, np.asarray(turn, np.float32)[None], np.asarray(at, np.float32)[None])

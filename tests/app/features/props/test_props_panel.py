@@ -1,0 +1,179 @@
+"""The props panel: files come in, props are moved with mouse, keys and numbers, carried and removed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import trimesh
+from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QFileDialog
+
+from metagraph.graph.prop import Prop
+
+pytestmark = [pytest.mark.window, pytest.mark.gl]
+
+
+@pytest.fixture
+def box(tmp_path: Path) -> Path:
+    path = tmp_path / "box.stl"
+    path.write_bytes(trimesh.creation.box((0.6, 0.6, 0.4)).export(file_type="stl"))
+    return path
+
+
+@pytest.fixture
+def panel(toys):
+    toys.shell.show("props")
+    out = toys.shell.panel("props")
+    yield out
+    toys.docks["props"].close()
+
+
+def only(panel) -> Prop:
+    (prop,) = panel.document.project.props.values()
+    return prop
+
+
+def put(toys, panel, box: Path) -> Prop:
+    panel.add([box])
+    toys.wait(lambda: bool(panel.document.project.props))
+    toys.wait(lambda: bool(panel.figures.props.meshes.meshes) and panel.plan.width() > 100)
+    return only(panel)
+
+
+def drag(plan, start: QPointF, end: QPointF, modifier=Qt.KeyboardModifier.NoModifier) -> None:
+    middle = (start + end) / 2
+    QTest.mousePress(plan, Qt.MouseButton.LeftButton, modifier, start.toPoint())
+    for at in (middle, end):
+        move(plan, at, modifier)
+    QTest.mouseRelease(plan, Qt.MouseButton.LeftButton, modifier, end.toPoint())
+
+
+def move(plan, at: QPointF, modifier) -> None:
+    from PySide6.QtCore import QEvent
+    from PySide6.QtGui import QMouseEvent
+    from PySide6.QtWidgets import QApplication
+
+    everywhere = plan.mapToGlobal(at.toPoint())
+    event = QMouseEvent(
+        QEvent.Type.MouseMove,
+        at,
+        QPointF(everywhere),
+        Qt.MouseButton.NoButton,
+        Qt.MouseButton.LeftButton,
+        modifier,
+    )
+    QApplication.sendEvent(plan, event)
+
+
+def test_files_are_added_as_one_step_and_bad_ones_are_said(toys, panel, box, tmp_path, monkeypatch):
+    bad = tmp_path / "bad.obj"
+    bad.write_text("nothing", "utf-8")
+    monkeypatch.setattr(QFileDialog, "getOpenFileNames", lambda *_: ([str(box), str(bad), str(box)], "Props"))
+    assert panel.empty.isVisibleTo(panel) and not panel.list.isVisibleTo(panel)
+    toys.do("prop")
+    toys.wait(lambda: len(panel.document.project.props) == 2)
+    toys.wait(lambda: any("bad.obj" in words for words in toys.told))
+    first, second = panel.document.project.props.values()
+    assert first.name == "box" and first.at != second.at, "one does not hide the other"
+    assert panel.document.undo_stack.undoText() == "Add 2 props"
+    panel.document.undo()
+    assert panel.document.project.props == {} and panel.empty.isVisibleTo(panel)
+
+
+def test_a_file_dropped_on_the_window_is_a_prop(toys, panel, box):
+    assert toys.drop_files((toys.window, QPoint(400, 300)), box)
+    toys.wait(lambda: bool(panel.document.project.props))
+    assert only(panel).name == "box"
+
+
+def test_a_prop_is_dragged_over_the_floor_and_is_one_step(toys, panel, box):
+    prop = put(toys, panel, box)
+    steps = panel.document.undo_stack.count()
+    start = panel.plan.to_pixels(prop.at[0], prop.at[2])
+    end = panel.plan.to_pixels(-0.512, 0.731)
+    drag(panel.plan, start, end)
+    assert only(panel).at == pytest.approx((-0.5, 0, 0.75), abs=0.051), "it snaps to 5 cm"
+    assert only(panel).at[0] % 0.05 == pytest.approx(0, abs=1e-6) or only(panel).at[
+        0
+    ] % 0.05 == pytest.approx(0.05)
+    assert panel.document.undo_stack.count() == steps + 1
+    panel.document.undo()
+    assert only(panel) == prop
+
+
+def test_the_dot_turns_a_prop_and_alt_does_not_snap(toys, panel, box):
+    prop = put(toys, panel, box)
+    outline = panel.plan.find_outline(prop)
+    assert outline.handle.y() > outline.corners.boundingRect().bottom(), "its front is towards the viewer"
+    right = panel.plan.to_pixels(prop.at[0] + 0.5, prop.at[2] + 0.02)
+    drag(panel.plan, outline.handle, right)
+    assert only(panel).turn == (0, 90, 0)
+    drag(
+        panel.plan,
+        panel.plan.find_outline(only(panel)).handle,
+        panel.plan.to_pixels(prop.at[0] + 0.3, prop.at[2] + 0.4),
+        Qt.KeyboardModifier.AltModifier,
+    )
+    assert 30 < only(panel).turn[1] < 45 and only(panel).turn[1] % 15 != 0
+
+
+def test_escape_ends_a_drag_with_the_prop_where_it_was(toys, panel, box):
+    prop = put(toys, panel, box)
+    start = panel.plan.to_pixels(prop.at[0], prop.at[2])
+    QTest.mousePress(panel.plan, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, start.toPoint())
+    move(panel.plan, start + QPointF(60, 40), Qt.KeyboardModifier.NoModifier)
+    assert only(panel).at != prop.at
+    QTest.keyClick(panel.plan, Qt.Key.Key_Escape)
+    assert only(panel).at == prop.at
+
+
+def test_arrow_keys_move_the_chosen_prop_by_five_centimetres(toys, panel, box):
+    prop = put(toys, panel, box)
+    QTest.keyClick(panel.plan, Qt.Key.Key_Left)
+    QTest.keyClick(panel.plan, Qt.Key.Key_Down)
+    assert only(panel).at == pytest.approx((prop.at[0] - 0.05, 0, prop.at[2] + 0.05))
+
+
+def test_numbers_place_turn_and_resize_it(toys, panel, box):
+    put(toys, panel, box)
+    panel.numbers["at", 1].setValue(0.75)
+    panel.numbers["turn", 1].setValue(45)
+    panel.numbers["scale", 0].setValue(0.5)
+    prop = only(panel)
+    assert (prop.at[1], prop.turn[1], prop.scale) == (0.75, 45, 0.5)
+    assert panel.document.undo_stack.undoText() == "Resize box"
+
+
+def test_a_joint_carries_it_from_its_palm_and_it_is_put_down_again(toys, panel, box):
+    put(toys, panel, box)
+    joint = panel.joint.itemData(1)
+    panel.joint.setCurrentIndex(1)
+    panel.joint.activated.emit(1)
+    assert only(panel).joint == joint and panel.document.undo_stack.undoText() == "Carry box"
+    assert panel.plan.props == {}, "what is carried is not on the floor"
+    panel.joint.setCurrentIndex(0)
+    panel.joint.activated.emit(0)
+    assert only(panel).joint == "" and only(panel).at[1] == 0
+
+
+def test_remove_takes_the_chosen_prop_away(toys, panel, box):
+    put(toys, panel, box)
+    QTest.mouseClick(panel.remove_button, Qt.MouseButton.LeftButton)
+    assert panel.document.project.props == {}
+    panel.document.undo()
+    assert only(panel).name == "box"
+
+
+def test_what_lies_on_a_desk_is_chosen_before_the_desk(toys, panel, box):
+    put(toys, panel, box)
+    large = panel.current
+    panel.add([box])
+    toys.wait(lambda: len(panel.document.project.props) == 2)
+    small = panel.current
+    panel.numbers["scale", 0].setValue(0.2)
+    prop = panel.document.project.props[large]
+    panel.numbers["at", 0].setValue(prop.at[0])
+    assert panel.plan.find_prop(panel.plan.to_pixels(prop.at[0], prop.at[2])) == small
+    assert panel.plan.find_prop(QPointF(2, 2)) == ""

@@ -1,0 +1,89 @@
+"""Props are added, changed and removed; what cannot be is refused in words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+
+from metagraph.formats.project.merging import merge_projects
+from metagraph.formats.store import (
+    list_project_files,
+    make_paths_absolute,
+    move_project,
+    read_project,
+    save_project,
+)
+from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing.differences import describe_differences
+from metagraph.graph.editing.props import MOST, add_prop, find_palm, remove_prop, set_prop
+from metagraph.graph.prop import Prop
+from tests.conftest import Toy
+
+CUP = Prop(name="cup", path="props/cup.glb", at=(0.25, 0.75, 0.5), turn=(0, 30, 0), scale=1.5)
+
+
+def test_a_prop_is_added_changed_and_removed() -> None:
+    project, ident = add_prop(Toy().project(), CUP)
+    assert project.props == {ident: CUP} and project.has(ident)
+    moved = set_prop(project, ident, msgspec.structs.replace(CUP, at=(1, 0, 0)))
+    assert moved.props[ident].at == (1, 0, 0) and project.props[ident] == CUP
+    assert remove_prop(moved, ident).props == {}
+
+
+def test_the_same_file_twice_is_two_props() -> None:
+    project, first = add_prop(Toy().project(), CUP)
+    project, second = add_prop(project, CUP)
+    assert first != second and len(project.props) == 2
+
+
+def test_what_cannot_be_done_is_refused_in_words() -> None:
+    project, ident = add_prop(Toy().project(), CUP)
+    with pytest.raises(EditError, match="no joint 'Tail'"):
+        set_prop(project, ident, msgspec.structs.replace(CUP, joint="Tail"))
+    with pytest.raises(EditError, match="no longer"):
+        set_prop(project, "o1", CUP)
+    for _ in range(MOST - 1):
+        project, _ = add_prop(project, CUP)
+    with pytest.raises(EditError, match="at most 100"):
+        add_prop(project, CUP)
+
+
+def test_the_palm_is_the_middle_of_what_is_below_a_joint() -> None:
+    project = Toy().project()
+    skeleton = project.skeleton
+    assert skeleton is not None
+    parent = next(n for n in range(len(skeleton)) if skeleton.children[n])
+    middle = np.mean([skeleton.rest_translations[c] for c in skeleton.children[parent]], axis=0)
+    np.testing.assert_allclose(find_palm(project, skeleton.names[parent]), middle, atol=1e-4)
+    leaf = next(n for n in range(len(skeleton)) if not skeleton.children[n])
+    assert find_palm(project, skeleton.names[leaf]) == (0, 0, 0) == find_palm(project, "nobody")
+
+
+def test_props_are_saved_moved_and_read(tmp_path: Path) -> None:
+    project, ident = add_prop(Toy().project(), CUP)
+    there, here = tmp_path / "a" / "p.metagraph.yaml", tmp_path / "p.metagraph.yaml"
+    there.parent.mkdir()
+    save_project(move_project(project, here, there), there)
+    read = read_project(there)
+    assert read.props[ident].path == "../props/cup.glb" and read.props[ident].at == CUP.at
+    assert there.parent / "../props/cup.glb" in list_project_files(read, there.parent)
+    whole = make_paths_absolute(read, there.parent)
+    assert whole.props[ident].path == (tmp_path / "props" / "cup.glb").resolve().as_posix()
+
+
+def test_two_peoples_props_are_merged() -> None:
+    base = Toy().project()
+    ours, mine = add_prop(base, CUP)
+    theirs, other = add_prop(base, Prop(name="desk", path="desk.obj"))
+    merged = merge_projects(base, ours, theirs)
+    assert set(merged.project.props) == {mine, other} and merged.kept == ()
+
+
+def test_the_history_says_what_was_done_to_a_prop() -> None:
+    before, ident = add_prop(Toy().project(), CUP)
+    after = set_prop(before, ident, msgspec.structs.replace(CUP, scale=2.0))
+    (line,) = describe_differences(before, after)
+    assert "cup" in line and "Prop" in line and "2" in line
