@@ -46,7 +46,7 @@ class PropsFeature(Feature):
         return found
 
 
-def claim(paths: Sequence[Path]) -> Sequence[Path]:
+def pick_props(paths: Sequence[Path]) -> Sequence[Path]:
     """Return the files that are props, by their names."""
     return [path for path in paths if path.suffix.lower() in DROPPED]
 
@@ -81,5 +81,5 @@ def contribute(shell: Shell) -> Contribution:
             ),
         ),
         commands=bind_commands(COMMANDS, feature),
-        drops=(FileDrop(DROPPED, claim, feature.take),),
+        drops=(FileDrop(DROPPED, pick_props, feature.take),),
     )
