@@ -264,6 +264,17 @@ def _markers() -> dict[str, bytes]:
     return {"a.trc": write_trc(few, 60), "b.trc": write_trc(joints, 60, "m"), "c.c3d": write_c3d(few, 60)}
 
 
+def _props() -> dict[str, bytes]:
+    import trimesh
+
+    box, out = trimesh.creation.box(), {}
+    box.visual.face_colors = [[n * 20, 9, 9, 255] for n in range(12)]
+    for ending in ("obj", "stl", "ply", "off"):
+        data = box.export(file_type=ending)
+        out[f"a.{ending}"] = data.encode() if isinstance(data, str) else data
+    return {**out, "b.glb": (SAMPLES / "props" / "cup.glb").read_bytes()}
+
+
 def every_reader() -> dict[str, Fuzzed]:
     from app.features.lines.line_files import read_lines
     from app.project.pattern_files import read_patterns
@@ -281,6 +292,7 @@ def every_reader() -> dict[str, Fuzzed]:
     from metagraph.formats.keypoints.reader import read_keypoints
     from metagraph.formats.language_files import read_pack
     from metagraph.formats.live_link_face import read_live_link
+    from metagraph.formats.props.reader import read_prop
     from metagraph.formats.recovery import read_journal
     from metagraph.formats.store import read_project
     from metagraph.formats.transcripts.reader import read_transcript
@@ -368,6 +380,7 @@ def every_reader() -> dict[str, Fuzzed]:
         "smpl": Fuzzed(read_clips, _smpl, (b"PK", b"NUMPY", b"poses.npy", b"<f8"), spoilt_archive),
         "markers": Fuzzed(read_clips, _markers, (b"\t", b"\n", b"nan", b"1e300", b"LASI", b"POINT", b"\xff\xff"), spoilt_words),
         "acclaim": Fuzzed(acclaim, _acclaim, (b":bonedata", b"begin", b"dof rx", b"root", b"length"), spoilt_words),
+        "props": Fuzzed(read_prop, _props, (b"f ", b"v ", b"element face", b"nan", b"\xff\xff", b"JSON"), spoilt_words),
         "gltf": Fuzzed(read_clips, _clip_seeds(".glb"), JSON, spoilt_glb),
         "character": Fuzzed(drawn, _clip_seeds(".glb"), JSON, spoilt_glb),
         "textgrid": Fuzzed(make_voice_from_phones, _only(".TextGrid"), (b'"', b"<exists>", b"IntervalTier"), spoilt_words),

@@ -60,7 +60,7 @@ def read_prop(path: str | Path) -> CharacterMesh:
     content = io.BytesIO(read_file(path, PROP_FILE))
     try:
         scene = trimesh.load_scene(content, file_type=ending[1:], resolver=beside, process=False)
-        parts = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh) and len(part.faces)]
+        parts = _list_parts(scene)
     except FileError:
         raise
     except Exception as error:  # trimesh raises many kinds on broken files
@@ -70,6 +70,15 @@ def read_prop(path: str | Path) -> CharacterMesh:
         raise FileError(path, phrase("it has no triangle"), "", REMEDY)
     unit = _find_unit(parts, notes) if ending not in _IN_METRES else 1.0
     return _Builder(path.stem, notes, ending in _IN_METRES).build(path, parts, unit)
+
+
+@dataclass(frozen=True)
+class _Part:
+    """positions `[V, 3]` in the file's unit, triangles `[N, 3]`, and trimesh's word on how it looks."""
+
+    positions: Array
+    triangles: Array
+    visual: Any
 
 
 @dataclass
@@ -91,10 +100,28 @@ class _Beside:
         return self.get(name)
 
 
-def _find_unit(parts: list[Any], notes: list[str]) -> float:
+def _list_parts(scene: Any) -> list[_Part]:
+    """Return the meshes of a scene of trimesh's, where it has them. Its `dump` would do it, but needs SciPy to
+    copy colours.
+    """
+    out = []
+    for node in scene.graph.nodes_geometry:
+        matrix, name = scene.graph[node]
+        mesh = scene.geometry[name]
+        if not len(getattr(mesh, "faces", ())):
+            continue
+        positions = np.asarray(mesh.vertices, float) @ matrix[:3, :3].T + matrix[:3, 3]
+        triangles = np.asarray(mesh.faces, np.int64).reshape(-1, 3)
+        if np.linalg.det(matrix[:3, :3]) < 0:  # a mirrored part is inside out
+            triangles = triangles[:, ::-1]
+        out.append(_Part(positions, triangles, mesh.visual))
+    return out
+
+
+def _find_unit(parts: list[_Part], notes: list[str]) -> float:
     """Return how many metres one unit of a file is that does not say so, and note what was taken."""
     with np.errstate(invalid="ignore", over="ignore"):
-        points = np.concatenate([np.asarray(part.vertices, float) for part in parts])
+        points = np.concatenate([part.positions for part in parts])
         points = points[np.isfinite(points).all(1)]
         size = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
     if size <= _CENTIMETRES:
@@ -114,13 +141,12 @@ class _Builder:
     arrays: list[tuple[Array, Array, Array, Array]] = field(default_factory=list)
     materials: list[MeshMaterial] = field(default_factory=list)
 
-    def build(self, path: Path, parts: list[Any], unit: float) -> CharacterMesh:
+    def build(self, path: Path, parts: list[_Part], unit: float) -> CharacterMesh:
         """Return the mesh of all parts. Raises FileError if nothing of them can be drawn."""
-        total, left = sum(len(part.faces) for part in parts), 0
+        total, left = sum(len(part.triangles) for part in parts), 0
         share = min(1.0, MOST_TRIANGLES / total)
         for part in parts:
-            positions = np.asarray(part.vertices, float) * unit
-            triangles = np.asarray(part.faces, np.int64).reshape(-1, 3)
+            positions, triangles = part.positions * unit, part.triangles
             drawn = find_drawable(positions, triangles)
             triangles = triangles[drawn]
             left += len(drawn) - len(triangles)
@@ -146,7 +172,7 @@ class _Builder:
             )
         return self._join()
 
-    def _describe(self, part: Any, drawn: Array | None) -> tuple[MeshMaterial, Array | None]:
+    def _describe(self, part: _Part, drawn: Array | None) -> tuple[MeshMaterial, Array | None]:
         """Return a part's material, and its texture coordinates. drawn: which triangles are drawn; None for a
         part without pictures.
         """
@@ -159,7 +185,7 @@ class _Builder:
                 image is not None
                 and drawn is not None
                 and uv is not None
-                and uv.shape == (len(part.vertices), 2)
+                and uv.shape == (len(part.positions), 2)
                 and image.width * image.height <= PICTURE_PIXELS
             )
             colour = self._colour(material.main_color)

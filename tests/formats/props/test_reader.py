@@ -6,6 +6,8 @@ import io
 import json
 import random
 import struct
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +18,7 @@ from PIL import Image
 from metagraph.errors import FileError
 from metagraph.formats.props.reader import ENDINGS, GREY, read_prop
 from metagraph.formats.props.shapes import MOST_TRIANGLES
+from tests.processes import ROOT
 
 OBJ = """mtllib board.mtl
 v 0 0 0
@@ -217,3 +220,18 @@ def test_files_with_bytes_changed_are_read_or_refused(tmp_path: Path, ending: st
         except FileError:
             continue
         assert np.isfinite(mesh.positions).all() and np.isfinite(mesh.normals).all()
+
+
+def test_colours_are_read_without_scipy_which_users_do_not_have(tmp_path: Path) -> None:
+    box = trimesh.creation.box()
+    box.visual.face_colors = [[n * 20, 9, 9, 255] for n in range(12)]
+    path = write(tmp_path / "box.ply", box)
+    code = (
+        "import sys; sys.modules['scipy'] = None\n"
+        "from metagraph.formats.props.reader import read_prop\n"
+        f"print(read_prop({str(path)!r}).materials[0].image is not None)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.stdout.strip() == "True", done.stderr
