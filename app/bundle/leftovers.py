@@ -45,5 +45,4 @@ SITE = (
     "numpy/**/tests", "numpy/f2py", "numpy/distutils", "pyqtgraph/examples", "PIL/*.pyi",
     # A format of pictures that no character has.
     "PIL/_avif*.so", "pillow.libs/libavif*",
-    "trimesh",  # no module imports it yet
 )  # fmt: skip
