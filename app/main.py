@@ -135,7 +135,7 @@ def tell_news(window: Window) -> None:
 
     def tell(release: Release | None) -> None:
         if release is not None:
-            words = tr("Metagraph {version} is there…", version=release.version)
+            words = tr("Metagraph {version} is available…", version=release.version)
             command = next(c for c in shell.actions.commands if c.id == "news")
             shell.notice.tell(words, words, lambda: command.run(release))
 

@@ -20,6 +20,23 @@ ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
 NAMED = re.compile(r"(?<![\w/-])docs/[\w./-]*\w")
 HERE = re.compile(r'"docs"((?: / "[\w.-]+")+)')  # ROOT / "docs" / "images" / "x.png"
+# What stands in italics and is no name in the window: words that a page explains, titles, words of a search.
+EXPLAINED = {
+    *(
+        "beat",
+        "contacts",
+        "cues",
+        "explain",
+        "journal",
+        "listens",
+        "needs a look",
+        "ours",
+        "peak",
+        "performed",
+    ),
+    *("reacts", "retargets", "sit", "talks", "thinks"),
+    "statistics-based motion synthesis for social conversations",
+}
 OF_THE_PAST = {"CHANGELOG.md"}  # what it says was so when it was written; its links are checked
 
 
@@ -115,6 +132,37 @@ def test_systems_that_nobody_ran_it_on_are_offered_as_not_tested() -> None:
         for page in (ROOT / "README.md", DOCS / "start" / "install.md"):
             (start,) = re.findall(rf"^\| {system}\b.*run\.py.*$", page.read_text(encoding="utf-8"), re.M)
             assert untested == ("not tested yet" in start), (system, page.name)
+
+
+def find_italics(text: str) -> list[str]:
+    """Return the names in italics of a page, without code: parts of a path such as *Edit > History* alone."""
+    prose = re.sub(r"```.*?```|`[^`\n]*`", "", text, flags=re.DOTALL)
+    found = re.findall(r"(?<![*\w])\*(?!\*)([^*]+?)\*(?!\*)", prose)
+    return [part for name in found for part in " ".join(name.split()).split(" > ")]
+
+
+def test_names_of_commands_and_fields_on_pages_for_animators_are_in_the_window() -> None:
+    pytest.importorskip("babel")
+    from app.languages.catalogues import find_marked
+
+    def plain(text: str) -> str:
+        return re.sub("[&…]", "", text.partition("\t")[0]).strip(" .:").lower()
+
+    texts = {text for one in find_marked() for text in one.texts}
+    shown = {plain(text) for text in texts}
+    filled = [
+        re.compile(re.sub(r"\\\{[^}]*\}", ".+", re.escape(text)))
+        for text in texts
+        if "{" in text and len(re.sub(r"\{[^}]*\}", "", text)) > 6
+    ]
+    pages = [ROOT / "README.md", *DOCS.glob("start/*.md"), *DOCS.glob("animators/*.md")]
+    unknown = [
+        f"{page.name}: {name}"
+        for page in pages
+        for name in find_italics(page.read_text(encoding="utf-8"))
+        if plain(name) not in shown | EXPLAINED | {""} and not any(one.fullmatch(name) for one in filled)
+    ]
+    assert not unknown, "write the name that the window shows, or add a word that the page explains"
 
 
 def long_lines(text: str) -> list[int]:

@@ -16,7 +16,6 @@ import pytest
 
 pytest.importorskip("babel")
 from app.languages.catalogues import find_marked
-from metagraph.engines.translation.listing import LISTING
 
 ROOT = Path(__file__).resolve().parents[1]
 QUOTES = ("docs/contributing/style.md",)  # shows what not to write
@@ -93,8 +92,6 @@ PRINTED_PHRASES = {
     r"\bit is written as\b": "the file can be",
 }
 PRINTING = ("app/cli/*.py", "metagraph/live/*.py")
-# Modules that are translated for the engines, with their docstrings and comments.
-TRANSLATED = {Path(*one.module.split(".")).with_suffix(".py").as_posix() for one in LISTING}
 
 # Modules that a new maintainer reads first.
 FRONT_DOORS = (
@@ -196,12 +193,11 @@ def search_docstrings(root: Path, modules: Iterable[Path]) -> Iterator[Found]:
 
 
 def list_modules(root: Path = ROOT) -> Iterator[Path]:
-    """Yield the modules of the program and of its tests; not this one, and none that is translated."""
+    """Yield the modules of the program and of its tests, without this one."""
     for folder in ("app", "docs", "metagraph", "preview", "sample_clips", "tests"):
         for path in sorted((root / folder).rglob("*.py")):
-            name = path.relative_to(root).as_posix()
             other = {"runtimes", "node_modules", "__pycache__"} & set(path.parts)
-            if not other and name not in TRANSLATED and path != Path(__file__):
+            if not other and path != Path(__file__):
                 yield path
 
 

@@ -64,8 +64,9 @@ class NetworkFiles(QObject):
             + more
             + "\n\n"
             + tr(
-                "Opening them shows those computers that you did, and perhaps who you are. Open them "
-                "only if you trust the source of this project. The answer is kept for this project."
+                "Those computers learn that you opened the files, and perhaps who you are. Open them "
+                "only if you trust the source of this project. Metagraph remembers your answer for this "
+                "project."
             )
         )
         box.setTextFormat(Qt.TextFormat.PlainText)

@@ -98,8 +98,8 @@ def describe_lost(left: Left) -> list[str]:
     if left.doubtful:
         words.append(
             tr(
-                "The project that the edits start from is damaged, too, so a value in it may be wrong. "
-                "Check it."
+                "The project that the edits start from is damaged, too, so one of its values may be "
+                "wrong. Check it."
             )
         )
     return words
@@ -188,7 +188,7 @@ class RecoverDialog(QDialog):
         go = buttons.addButton(tr("Continue"), QDialogButtonBox.ButtonRole.AcceptRole)
         put_off = tr("Cancel") if saved is not None else tr("Not now")
         buttons.addButton(put_off, QDialogButtonBox.ButtonRole.RejectRole).setToolTip(
-            tr("Everything is kept as it is")
+            tr("Everything stays as it is")
         )
         strengthen(go)
         go.setDefault(True)

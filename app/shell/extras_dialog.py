@@ -45,7 +45,7 @@ from metagraph.common.extras import (
 )
 
 HEADS = make_lazy_texts(
-    lambda: (tr("Extra"), tr("For"), tr("To load"), tr("On disk"), tr("Licence"), tr("State"))
+    lambda: (tr("Extra"), tr("For"), tr("Download"), tr("On disk"), tr("Licence"), tr("State"))
 )
 STEPS = 1000  # of the progress bar
 
@@ -100,12 +100,17 @@ class ExtrasDialog(QDialog):
         self.resize(940, 600)
         self.jobs = jobs
         self._job: WindowJob | None = None
-        words = tr("Some jobs need packages that are too large to bring along. All else works without them.")
+        words = tr(
+            "Some jobs need packages that are too large to ship with Metagraph. Everything else "
+            "works without them."
+        )
         self.table = self._make_table()
-        self.install = self._button(tr("Install"), tr("Load it from the network"), self.install_chosen)
+        self.install = self._button(tr("Install"), tr("Download it and install it"), self.install_chosen)
         strengthen(self.install)
         self.from_folder = self._button(
-            tr("From a folder…"), tr("Install it from files that you brought here"), self.ask_folder
+            tr("From a folder…"),
+            tr("Install it from files that you copied to this computer"),
+            self.ask_folder,
         )
         self.remove = self._button(tr("Remove"), tr("Free the space that it takes"), self.remove_chosen)
         self.stop = self._button(tr("Stop"), tr("Stop, and change nothing"), self.stop_job)

@@ -33,12 +33,12 @@ def find_studio_shortcuts(usual: Mapping[str, Collection[str]]) -> dict[str, tup
         where = f"shortcuts/{name}"
         if name not in usual:
             cause = phrase("there is no command '{name}'", name=name)
-            remedy = phrase("See the names on the page about studios.")
+            remedy = phrase("The page about studios lists the names.")
             studio = studio.with_problem(where, cause, remedy)
             continue
         keys = QKeySequence(words).toString()
         if words and (not keys or any(not key.strip() for key in keys.split(","))):
-            cause = phrase("'{keys}' is no shortcut", keys=words)
+            cause = phrase("'{keys}' is not a shortcut", keys=words)
             studio = studio.with_problem(where, cause, phrase("Write it as Ctrl+Shift+E."))
             continue
         others = [
@@ -66,7 +66,7 @@ def find_hidden_commands(known: Collection[str], settings: QSettings) -> frozens
     for name in studio.hidden_commands:
         if name not in known:
             cause = phrase("there is no command '{name}'", name=name)
-            remedy = phrase("See the names on the page about studios.")
+            remedy = phrase("The page about studios lists the names.")
             studio = studio.with_problem(f"hide/commands/{name}", cause, remedy)
     use_studio(studio)
     return frozenset() if is_all_shown(settings) else frozenset(studio.hidden_commands)

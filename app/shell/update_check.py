@@ -81,7 +81,7 @@ def find_update(version: str, settings: QSettings) -> Release | None:
     """
     address = find_update_address()
     if address is None or not is_asking_allowed(settings):
-        raise UpdateError(phrase("This Metagraph does not look for updates."))
+        raise UpdateError(phrase("This copy of Metagraph does not look for updates."))
     settings.setValue(ASKED, time.time())
     release = _ask(address)
     return release if _numbers(release.version) > _numbers(version) else None
@@ -97,7 +97,7 @@ def _ask(address: str) -> Release:
             data = answer.read(MOST + 1)
     except (OSError, ValueError) as error:
         raise UpdateError(
-            phrase("The server could not be asked ({why}). Try again later.", why=str(error))
+            phrase("Metagraph could not reach the server ({why}). Try again later.", why=str(error))
         ) from None
     try:
         if len(data) > MOST:
@@ -106,7 +106,9 @@ def _ask(address: str) -> Release:
     except msgspec.DecodeError:
         release = Release("")
     if not _VERSION.match(release.version):
-        raise UpdateError(phrase("The server's answer is no release. Tell who gave you Metagraph."))
+        raise UpdateError(
+            phrase("The server's answer does not describe a release. Tell the people who gave you Metagraph.")
+        )
     if not is_safe(release.url):
         release = Release(release.version, release.notes)
     return release

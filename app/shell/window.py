@@ -167,7 +167,7 @@ class Window(QMainWindow):
                     "look",
                     tr("Show what your studio hi&des"),
                     self._toggle_hidden,
-                    tip=tr("From the next start on"),
+                    tip=tr("At the next start"),
                     checked=lambda: is_all_shown(self.shell.settings),
                     visible=is_anything_hidden,
                 ),
@@ -177,7 +177,7 @@ class Window(QMainWindow):
     def _toggle_hidden(self) -> None:
         shown = is_all_shown(self.shell.settings)
         self.shell.settings.setValue(SHOW_ALL, "false" if shown else "true")
-        self.shell.tell(tr("This holds from the next start on."))
+        self.shell.tell(tr("This takes effect at the next start."))
 
     def _add_toggles(self) -> None:
         panels = self.menus["&View"].addMenu(tr("Panels"))

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
 from app.translation import tr, tr_noop
@@ -32,7 +31,7 @@ class Fix:
     changes: Mapping[str, Any] = field(default_factory=dict, hash=False)
     does: Callable[..., Project] | None = None
     args: tuple[Any, ...] = ()
-    tip: str = field(default_factory=partial(tr, "One step that can be undone"))
+    tip: str = field(default_factory=lambda: tr("One step that can be undone"))
     instead: Fix | None = None
     alone: bool = False
 

@@ -68,7 +68,7 @@ def install_extra(
     if not can_install(name):
         raise ExtraError(
             phrase(
-                "Install it with what Metagraph was installed with: {command}",
+                "Install it the way Metagraph was installed: {command}",
                 command=make_install_command(name),
             )
         )
@@ -81,8 +81,8 @@ def install_extra(
     if free < 1.3 * extra.megabytes:
         raise ExtraError(
             phrase(
-                "It needs {megabytes:.0f} MB on the disk of {folder}, which has {free:.0f} MB. Make room and "
-                "try again.",
+                "It needs {megabytes:.0f} MB on the disk of {folder}, which has {free:.0f} MB free. Make "
+                "room and try again.",
                 megabytes=1.3 * extra.megabytes,
                 folder=place,
                 free=free,
@@ -116,7 +116,7 @@ def _install_apart(
         options += ["--no-deps"] if extra.holds else ["--constraint", str(fits)]
         _run_pip(name, [*options, *source], tell, stopped)
         if not holds_all(fresh, extra):
-            raise ExtraError(phrase("The package that was loaded lacks the files that Metagraph needs."))
+            raise ExtraError(phrase("The downloaded package lacks the files that Metagraph needs."))
         for part in () if extra.holds else fresh.iterdir():
             if (ROOT / part.name).exists():  # the bundle has it, and its own comes first
                 shutil.rmtree(part) if part.is_dir() else part.unlink()
@@ -212,7 +212,11 @@ def _check(name: str, folder: Path | None, tell: Tell) -> None:
     code, said = run_program(command, CHECK)
     if code != 0:
         why = (said.strip().splitlines() or [f"status {code}"])[-1]
-        raise ExtraError(phrase("It was loaded but does not work here ({why}). It was not kept.", why=why))
+        raise ExtraError(
+            phrase(
+                "It was downloaded but does not work here ({why}), so Metagraph removed it again.", why=why
+            )
+        )
     tell(1.0, phrase("Installed."))
 
 
@@ -238,7 +242,7 @@ def remove_extra(name: str) -> int:
     if not can_install(name):
         raise ExtraError(
             phrase(
-                "Remove it with what Metagraph was installed with: {command}",
+                "Remove it the way Metagraph was installed: {command}",
                 command=make_remove_command(name),
             )
         )

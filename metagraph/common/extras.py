@@ -105,8 +105,8 @@ EXTRAS: Mapping[str, Extra] = {
 Way = Literal["bundle", "run.py", "pipx", "uv", "pip"]
 NAME = "metagraph-studio"
 _MISSING = phrase(
-    "{what} needs {module} (the extra '{extra}'), which is not installed: {download} MB to load, {megabytes} "
-    "MB on disk. Choose Help > Extras, or run: {command}"
+    "{what} needs {module} (the extra '{extra}'), which is not installed: {download} MB to "
+    "download, {megabytes} MB on disk. Choose Help > Extras, or run: {command}"
 ).template
 
 

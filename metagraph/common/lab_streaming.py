@@ -92,7 +92,7 @@ def load_lsl(option: str, network: bool) -> Any:
             why = describe_missing_extra("lab", phrase("The Lab Streaming Layer")) if missing else str(error)
             raise LabStreamError(
                 phrase(
-                    "the Lab Streaming Layer cannot be had. {why}. Or leave {option} out",
+                    "the Lab Streaming Layer is not available. {why}. Or leave {option} out",
                     why=why,
                     option=option,
                 )

@@ -25,8 +25,8 @@ def describe_pip_line(line: str) -> Phrase | None:
         package = _name(PurePosixPath(found[1]).name)
         size = find_download_size(line)
         if size:
-            return phrase("Loading {package}, {size:.1f} MB…", package=package, size=size / 1e6)
-        return phrase("Loading {package}…", package=package)
+            return phrase("Downloading {package}, {size:.1f} MB…", package=package, size=size / 1e6)
+        return phrase("Downloading {package}…", package=package)
     if line.startswith("Processing "):
         return phrase("Reading {package}…", package=_name(PurePosixPath(line.split()[1]).name))
     if line.startswith("Installing collected packages"):
@@ -47,8 +47,8 @@ def explain_pip_failure(lines: Sequence[str], code: int, package: str, from_fold
         return phrase("The disk is full. Make room and try again.")
     if "CERTIFICATE_VERIFY_FAILED" in said or "certificate verify failed" in said:
         return phrase(
-            "The network's certificate is not trusted. Ask who looks after your network for the file of its "
-            "certificate, and name it in the variable SSL_CERT_FILE."
+            "The network's certificate is not trusted. Ask the people who look after your network "
+            "for its certificate file, and name it in the variable SSL_CERT_FILE."
         )
     if "ResolutionImpossible" in said or "conflicting dependencies" in said:
         return phrase(
@@ -57,7 +57,8 @@ def explain_pip_failure(lines: Sequence[str], code: int, package: str, from_fold
     if from_folder and "No matching distribution" in said:
         missing = re.search(r"No matching distribution found for (\S+)", said)
         return phrase(
-            "The folder has no {package} that fits this computer. Load the files again with the line below.",
+            "The folder has no {package} that fits this computer. Download the files again with the "
+            "line below.",
             package=missing[1] if missing else package,
         )
     if NO_NETWORK.search(said):

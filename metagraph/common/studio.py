@@ -119,8 +119,8 @@ def _parse(studio: Studio, data: bytes) -> Studio:
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         mark = getattr(error, "problem_mark", None)
         studio = replace(studio, lines={"": mark.line + 1 if mark is not None else 0})
-        cause = phrase("it is no YAML ({why})", why=str(getattr(error, "problem", error)))
-        return studio.with_problem("", cause, phrase("Mend the line."))
+        cause = phrase("it is not YAML ({why})", why=str(getattr(error, "problem", error)))
+        return studio.with_problem("", cause, phrase("Correct the line."))
     if content is None:
         return studio
     if not isinstance(content, dict):
@@ -162,7 +162,7 @@ def _set(studio: Studio, name: str, value: Any) -> Studio:
 
 def _read_text(studio: Studio, key: str, value: object) -> Studio:
     if not isinstance(value, str):
-        return studio.with_problem(key, phrase("'{key}' is no text", key=key), phrase("Write it in quotes."))
+        return studio.with_problem(key, phrase("'{key}' is not text", key=key), phrase("Write it in quotes."))
     if key == "theme" and value not in THEMES:
         cause = phrase("there is no theme '{value}'", value=value)
         return studio.with_problem(key, cause, phrase("Known are {names}.", names=", ".join(THEMES)))
@@ -182,10 +182,10 @@ def _read_mapping(studio: Studio, key: str, value: object) -> Studio:
             cause = phrase("'{key}' is unknown", key=str(name))
             studio = studio.with_problem(where, cause, phrase("Known are {names}.", names=", ".join(known)))
         elif not isinstance(words, str):
-            cause = phrase("'{key}' is no text", key=str(name))
+            cause = phrase("'{key}' is not text", key=str(name))
             studio = studio.with_problem(where, cause, phrase("Write it in quotes."))
         elif key == "folders" and not Path(words).expanduser().is_absolute():
-            cause = phrase("'{folder}' is no whole path", folder=words)
+            cause = phrase("'{folder}' is not a full path", folder=words)
             studio = studio.with_problem(where, cause, phrase("Begin it with the drive or with /."))
         else:
             out[str(name)] = Path(words).expanduser() if key == "folders" else words

@@ -38,7 +38,9 @@ def describe_replaced(values: Iterable[Any]) -> Phrase | None:
     lost = sum(_CANNOT.search(text) is not None for text in _texts(values))
     if not lost:
         return None
-    return phrase("{count} texts hold control characters, which XML cannot: � stands for them", count=lost)
+    return phrase(
+        "{count} texts contain control characters, which XML cannot hold: � replaces them", count=lost
+    )
 
 
 def _texts(value: Any) -> Iterable[str]:

@@ -29,8 +29,8 @@ Array = NDArray[Any]
 RATE = 120.0  # frames a second of CMU's files; AMC does not say
 _INCH = 0.0254  # metres; ASF lengths times 1 / `length` are inches
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-_ASF = phrase("Put the skeleton (.asf) beside it, with the same name or what the name begins with.")
-_AGAIN = phrase("Take the file as its makers published it.")
+_ASF = phrase("Put the skeleton (.asf) beside it, with the same name or the beginning of that name.")
+_AGAIN = phrase("Use the file as its makers published it.")
 
 
 @dataclass
@@ -101,7 +101,7 @@ def read_amc(path: str | Path) -> Clip:
     )
     notes = (
         phrase("on the skeleton of {name}", name=skeleton_file.name),
-        phrase("it does not say its frames a second: {rate:g} were taken", rate=RATE),
+        phrase("it does not give its frame rate: {rate:g} frames a second were assumed", rate=RATE),
     )
     return Clip(
         path.stem, skeleton, RATE, rotation.make_continuous(rotations), places[:, None], (0,), notes=notes

@@ -66,11 +66,11 @@ def read_face_export(path: str | Path) -> Clip:
     if not kept:
         some = ", ".join(repr(clean_text(n[:30])) for n in others[:4])
         raise FileError(
-            path, phrase("its shapes are called {some}, which are not ARKit's", some=some), "", _REMEDY
+            path, phrase("its shapes are named {some}; these are not ARKit's names", some=some), "", _REMEDY
         )
     if others:
         some = ", ".join(clean_text(n[:30]) for n in others[:6])
-        notes.append(phrase("columns nobody knows were left out: {some}", some=some))
+        notes.append(phrase("unknown columns were left out: {some}", some=some))
     if not len(rows):
         raise FileError(path, phrase("it has no frames"), "", _REMEDY)
     order = sorted(kept, key=lambda one: ARKIT.index(one[1]))
@@ -104,10 +104,10 @@ def _from_json(path: Path, text: str, notes: list[str]) -> tuple[list[str], Arra
     if isinstance(data, dict) and "weightMat" in data:
         names = data.get("facsNames")
         if not isinstance(names, list) or not all(isinstance(n, str) for n in names):
-            raise FileError(path, phrase("'facsNames' is no list of names"), "", _REMEDY)
+            raise FileError(path, phrase("'facsNames' is not a list of names"), "", _REMEDY)
         rate = data.get("exportFps")
         if not isinstance(rate, int | float) or isinstance(rate, bool):
-            raise FileError(path, phrase("'exportFps' is no number"), "", _REMEDY)
+            raise FileError(path, phrase("'exportFps' is not a number"), "", _REMEDY)
         return names, _matrix(path, data["weightMat"], len(names)), float(rate)
     parts = data if isinstance(data, list) else [data]
     chunks: list[tuple[int | None, Array]] = []
@@ -118,8 +118,10 @@ def _from_json(path: Path, text: str, notes: list[str]) -> tuple[list[str], Arra
         first = part.get("FrameIndex")
         known = isinstance(first, int) and not isinstance(first, bool) and 0 <= first <= FRAMES
         chunks.append((first if known else None, _matrix(path, some, len(ARKIT) + 3)[:, : len(ARKIT)]))
-    notes.append(phrase("it does not say its frames a second: {rate:g} were taken", rate=AZURE_RATE))
-    notes.append(phrase("how it rolls the head and the eyes was left out"))
+    notes.append(
+        phrase("it does not give its frame rate: {rate:g} frames a second were assumed", rate=AZURE_RATE)
+    )
+    notes.append(phrase("the roll of the head and the eyes was left out"))
     return list(ARKIT), _in_order(path, chunks, notes), AZURE_RATE
 
 
@@ -146,7 +148,7 @@ def _in_order(path: Path, chunks: list[tuple[int | None, Array]], notes: list[st
     if said:
         notes.append(phrase("its {count} utterances follow each other without a pause", count=said + 1))
     if not known.all() and known.any():
-        notes.append(phrase("{count} frames that no event has were filled in", count=int((~known).sum())))
+        notes.append(phrase("{count} frames without an event were filled in", count=int((~known).sum())))
         at = np.arange(after)
         out = np.stack([np.interp(at, at[known], column[known]) for column in out.T], 1)
     return out
@@ -159,14 +161,14 @@ def _matrix(path: Path, rows: Any, width: int) -> Array:
     if odd is not None:
         raise FileError(
             path,
-            phrase("has not {width} numbers", width=width),
+            phrase("does not have {width} numbers", width=width),
             phrase("frame {number}", number=odd),
             _REMEDY,
         )
     try:
         return np.array(rows, float).reshape(-1, width)
     except (ValueError, TypeError, OverflowError):
-        raise FileError(path, phrase("a weight is no number"), "", _REMEDY) from None
+        raise FileError(path, phrase("a weight is not a number"), "", _REMEDY) from None
 
 
 def _from_table(path: Path, text: str, notes: list[str]) -> tuple[list[str], Array, float]:
@@ -183,7 +185,7 @@ def _from_table(path: Path, text: str, notes: list[str]) -> tuple[list[str], Arr
     time = next((k for k, c in enumerate(head) if c.casefold().endswith("timecode")), None)
     columns = [k for k, c in enumerate(head) if c.casefold().startswith("blendshapes.")]
     if time is None or not columns:
-        raise FileError(path, phrase("has no columns of a time and of blend shapes"), "line 1", _REMEDY)
+        raise FileError(path, phrase("has no columns for a time and for blend shapes"), "line 1", _REMEDY)
     if len(lines) < 2:
         raise FileError(path, phrase("it has no frames"), "", _REMEDY)
     times, rows = np.zeros(len(lines) - 1), np.zeros((len(lines) - 1, len(columns)))
@@ -193,7 +195,7 @@ def _from_table(path: Path, text: str, notes: list[str]) -> tuple[list[str], Arr
             times[n], rows[n] = values[time], [values[k] for k in columns]
         except (ValueError, IndexError):
             raise FileError(
-                path, phrase("has no number in each column"), phrase("line {n}", n=n + 2), _REMEDY
+                path, phrase("does not have a number in each column"), phrase("line {n}", n=n + 2), _REMEDY
             ) from None
     if split == ";":
         notes.append(phrase("semicolons separate its columns; its decimal commas were read as points"))

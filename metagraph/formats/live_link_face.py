@@ -190,7 +190,7 @@ def _times(stamps: list[tuple[int, int, float, bool]]) -> tuple[Array, float, li
         rate = next((r for r in RATES if r > most), most + 1)
     else:
         rate = max(USUAL_RATE, most + 1)
-        told.append(f"it is too short to tell its rate: taken for {rate} frames a second")
+        told.append(f"it is too short to show its rate; {rate} frames a second were assumed")
     if drop.any():
         # Of every minute but each tenth the first numbers are left out: 2 of 30, 4 of 60.
         left_out = 4 if rate > 30 else 2
@@ -229,7 +229,7 @@ def _clip(
     shapes = tuple(name for name in ARKIT if name in of)
     turns = {name: of.get(name, np.zeros(len(grid))) for name in TURNS}
     if max(np.abs(v).max() for v in turns.values()) > 2 * np.pi:
-        notes.append("its angles were taken for degrees")
+        notes.append("its angles were read as degrees")
         turns = {name: np.radians(v) for name, v in turns.items()}
     rotations, more = _turned(of, turns)
     still = np.zeros((len(grid), 1, 3))

@@ -29,7 +29,7 @@ from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
 
-_REMEDY = phrase("Give a file of AMASS, BEAT2 or another whose 'poses' are rotations of SMPL's joints.")
+_REMEDY = phrase("Use a file of AMASS or BEAT2, or another one whose 'poses' are rotations of SMPL's joints.")
 _LARGEST = 1 << 30  # bytes of one array
 _HEIGHT = 1.7  # metres
 USUAL_RATE = 30.0
@@ -64,7 +64,10 @@ def read_smpl(path: str | Path) -> Clip:
     if not 0 < frames <= FRAMES:
         raise FileError(path, phrase("it has no frames, or too many"), "'poses'", _REMEDY)
     notes: list[str] = [
-        phrase("read as {model}, without the model's file: its figure is ours", model=_MODELS[joints])
+        phrase(
+            "read as {model} without the model's file, so the body shape is Metagraph's own",
+            model=_MODELS[joints],
+        )
     ]
     rate = _rate(path, arrays, notes)
     if frames / rate > CLIP_SECONDS:
@@ -104,7 +107,7 @@ def _arrays(path: Path) -> dict[str, Array]:
     except (zipfile.BadZipFile, OSError, NotImplementedError, RuntimeError, EOFError) as error:
         raise FileError(
             path,
-            phrase("is no archive that can be read ({error})", error=clean_text(str(error)[:80])),
+            phrase("is not an archive that can be read ({error})", error=clean_text(str(error)[:80])),
             "",
             _REMEDY,
         ) from None
@@ -112,7 +115,7 @@ def _arrays(path: Path) -> dict[str, Array]:
         if isinstance(error, FileError):
             raise
         raise FileError(
-            path, phrase("is no archive that can be read ({error})", error="zlib"), "", _REMEDY
+            path, phrase("is not an archive that can be read ({error})", error="zlib"), "", _REMEDY
         ) from None
     if not any(k in out for k in (*_POSES, "root_orient")):
         some = ", ".join(repr(clean_text(n[:30])) for n in names[:8])
@@ -124,7 +127,7 @@ def _arrays(path: Path) -> dict[str, Array]:
 
 def _array(path: Path, name: str, data: bytes) -> Array:
     """Return an array of numbers; nothing is unpickled. Raises FileError."""
-    bad = phrase("'{name}' is no array of numbers", name=name)
+    bad = phrase("'{name}' is not an array of numbers", name=name)
     try:
         head = io.BytesIO(data)
         version = np.lib.format.read_magic(head)
@@ -165,7 +168,7 @@ def _poses(path: Path, arrays: Mapping[str, Array]) -> Array:
         raise FileError(
             path,
             phrase(
-                "'poses' is {shape}, which is none of the joints that are known: {known}",
+                "'poses' has the shape {shape}, which fits none of the known joints: {known}",
                 shape="x".join(map(str, whole.shape)),
                 known=known,
             ),
@@ -173,7 +176,7 @@ def _poses(path: Path, arrays: Mapping[str, Array]) -> Array:
             _REMEDY,
         )
     if not np.isfinite(flat).all() or (flat.size and np.abs(flat).max() > 1e3):
-        raise FileError(path, phrase("a rotation is no number that could be"), "'poses'", _REMEDY)
+        raise FileError(path, phrase("a rotation is not a possible number"), "'poses'", _REMEDY)
     if not len(flat):
         raise FileError(path, phrase("it has no frames, or too many"), "'poses'", _REMEDY)
     return flat.reshape(len(flat), count, 3)
@@ -182,7 +185,9 @@ def _poses(path: Path, arrays: Mapping[str, Array]) -> Array:
 def _rate(path: Path, arrays: Mapping[str, Array], notes: list[str]) -> float:
     said = next((arrays[k] for k in _RATES if k in arrays and arrays[k].size == 1), None)
     if said is None:
-        notes.append(phrase("it does not say its frames a second: {rate:g} were taken", rate=USUAL_RATE))
+        notes.append(
+            phrase("it does not give its frame rate: {rate:g} frames a second were assumed", rate=USUAL_RATE)
+        )
         return USUAL_RATE
     rate = float(said.reshape(-1)[0])
     if not 1 <= rate <= 1000:
@@ -193,10 +198,10 @@ def _rate(path: Path, arrays: Mapping[str, Array], notes: list[str]) -> float:
 def _places(path: Path, arrays: Mapping[str, Array], frames: int, notes: list[str]) -> Array:
     said = next((arrays[k] for k in _PLACES if k in arrays), None)
     if said is None:
-        notes.append(phrase("it does not say where the body goes ('trans'): it stays in its place"))
+        notes.append(phrase("it does not say where the body goes ('trans'), so the body stays in its place"))
         return np.zeros((frames, 3))
     if said.shape != (frames, 3) or not np.isfinite(said).all() or np.abs(said).max() > 1e5:
-        raise FileError(path, phrase("'trans' has not three numbers for each frame"), "", _REMEDY)
+        raise FileError(path, phrase("'trans' does not have three numbers for each frame"), "", _REMEDY)
     scaling = arrays.get(_SCALING)
     if scaling is not None and scaling.size == 1 and "smpl_trans" in arrays and float(scaling.max()) > 0:
         notes.append(phrase("'trans' was divided by '{name}', as in AIST++", name=_SCALING))
@@ -220,14 +225,14 @@ def _upright(places: Array, root: Array, notes: list[str]) -> tuple[Array, Array
     if abs(up[2]) > abs(up[1]):
         quarter = -1.0 if up[2] > 0 else 1.0
         told = (
-            phrase("Z is up in it; it was turned so that Y is")
+            phrase("its Z axis points up; it was turned so that Y points up")
             if up[2] > 0
-            else phrase("Z is down in it; it was turned so that Y is up")
+            else phrase("its Z axis points down; it was turned so that Y points up")
         )
     elif up[1] < -0.5:  # who stands before a camera, in the camera's axes
         quarter, told = (
             2.0,
-            phrase("Y is down in it, as in a camera's picture; it was turned so that Y is up"),
+            phrase("its Y axis points down, as in a camera's picture; it was turned so that Y points up"),
         )
     else:
         return places, root
@@ -247,7 +252,7 @@ def _in_metres(places: Array, rate: float, notes: list[str]) -> Array:
     for scale, unit in ((1.0, ""), (0.01, phrase("centimetres")), (0.001, phrase("millimetres"))):
         if speed * scale <= FASTEST and height * scale <= HIGHEST:
             if unit:
-                notes.append(phrase("'trans' was read as {unit}: in metres it goes too far", unit=unit))
+                notes.append(phrase("'trans' was read as {unit}: in metres it would go too far", unit=unit))
             return places * scale
     return places
 

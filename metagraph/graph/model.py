@@ -72,12 +72,12 @@ class Timing:
 
     `start` and `end` bound the part that plays; an `end` of None is the clip's end. `blend_in` and
     `blend_out` are the seconds of blending from and to the stance, inside that part. For a looping stance,
-    `blend_in` is the overlap at the loop's seam. `loop` repeats the part. From `earliest_exit` on the action
-    may be left; None plays it through. `stroke` is its most telling moment. `ready`, `stroke_end` and `relax`
-    are the ends of a gesture's preparation, stroke and hold; its retraction ends with the action. None takes
-    the times found from the motion (`playback.timing.phases`). `repeat` is for how many seconds a gesture or
-    fidget repeats its part where nobody says how long, as near as a whole number of times comes; 0 plays it
-    once.
+    `blend_in` is the overlap at the loop's seam. `loop` repeats the part. From `earliest_exit` on, the next
+    action may start; None plays the action to its end. `stroke` is its most expressive moment. `ready`,
+    `stroke_end` and `relax` are the ends of a gesture's preparation, stroke and hold; its retraction ends
+    with the action. None takes the times found from the motion (`playback.timing.phases`). `repeat` is the
+    number of seconds for which a gesture or fidget repeats its part if no request says how long; it plays the
+    nearest whole number of times. 0 plays it once.
     """
 
     start: float = 0.0
@@ -102,11 +102,11 @@ class Action:
     names the only joints it moves; empty means all. `joint_weights` has pairs of a name and a weight, above 0
     and below 1, for joints that it moves in part; the rest of their motion is the stance's. `tags` are free
     words, "positive" and "negative" among them. `likelihood` is relative, above 0. `cooldown` is the number
-    of seconds after its end in which it is not drawn again. `spacing` is the number of other actions of its
-    kind and stance that are drawn before it may be drawn again; None follows the setting `never_twice`.
-    `prominence` says how much it stands out, 0..1; None for as its motion and name say.
-    `contacts` are the times when its hands stay on the body. `clip_name` and `clip_sha256` say which clip it
-    was made of if that is not the clip it has now, else "" (see `formats.clip_identity`).
+    of seconds after its end in which it is not chosen again. `spacing` is the number of other actions of its
+    kind and stance that are chosen before it may be chosen again; None follows the setting `never_twice`.
+    `prominence` says how much it stands out, 0..1; None takes what its motion and name say. `contacts` are
+    the times when its hands stay on the body. `clip_name` and `clip_sha256` name the clip it was made from if
+    it has another clip now, else "" (see `formats.clip_identity`).
     """
 
     id: str
@@ -179,11 +179,11 @@ class MetaGraph:
 
     @cached_property
     def touched(self) -> Mapping[str, int]:
-        """Return for each joint how many contacts of actions are with it."""
+        """Return the number of contacts that actions have with each joint."""
         return Counter(span.to for action in self.actions.values() for span in action.contacts)
 
     def but(self, **changes: Any) -> MetaGraph:
-        """Return the graph with other fields than its actions replaced. What was derived from the actions is
+        """Return the graph with fields replaced, but not its actions. Everything derived from the actions is
         kept.
         """
         out = replace(self, **changes)
@@ -223,7 +223,7 @@ def _clip(action: Action) -> str:
 def _touched(
     counts: Mapping[str, int], before: Mapping[str, Action], changes: Mapping[str, Action | None]
 ) -> Mapping[str, int]:
-    """Return how many contacts are with each joint after the changes."""
+    """Return the number of contacts with each joint after the changes."""
     out = Counter(counts)
     for ident, new in changes.items():
         old = before.get(ident)
@@ -304,13 +304,13 @@ class ClipEntry:
 
     `path` is relative to the project file, with `/` between folders. `take` is the number of the animation in
     the file. `digest` is the file's SHA-256 in hex. `frames` and `fps` are those of the clip as it plays.
-    `as_is` names repairs that are not made on reading (`formats.takes.REPAIRS`). `brought_from` is the
-    fingerprint of the skeleton it is retargeted from, "" if the file has the project's own. `made_by` and
-    `made_seed` are the learned model that generated it and the seed; `made_by` is "" for other clips.
-    `retime` says how it is played faster, slower or held. `in_place` takes out the way its hips have made by
-    its end. `timed_on` is how many seconds the clip was long when its actions were timed, if its file has
-    another length since; else 0. `motion` is the loaded clip as it plays, None while
-    the file is missing. `source` is the clip as it was read, if that differs (see `graph.editing.retiming`).
+    `as_is` names repairs that reading leaves out (`formats.takes.REPAIRS`). `brought_from` is the fingerprint
+    of the skeleton it is retargeted from, "" if the file has the project's own. `made_by` and `made_seed` are
+    the learned model that generated it and the seed; `made_by` is "" for other clips. `retime` says how it is
+    played faster, slower or held. `in_place` removes the distance that its hips have moved by its end.
+    `timed_on` is the length of the clip in seconds when its actions were timed, if its file has another
+    length now; else 0. `motion` is the loaded clip as it plays, None while the file is missing. `source` is
+    the clip as it was read, if that differs (see `graph.editing.retiming`).
     """
 
     id: str
@@ -348,12 +348,12 @@ class BasePose:
 
 @dataclass(frozen=True)
 class Markov:
-    """A first-order model over (limb, kind) that writes meta actions when there are no requests (Borer et
-    al., 7.3).
+    """A first-order model over (limb, kind). It writes meta actions when there are no requests (Borer et al.,
+    7.3).
 
     `matrix` has rows of probabilities, each of which sums to 1. `gap` is the mean rest between two actions,
-    in seconds. `positive` and `negative` are the shares of gestures that ask for that tag, if tags are not
-    part of the states. `tags` has one text for each state, the tags it asks for with blanks between them; it
+    in seconds. `positive` and `negative` are the shares of gestures that request that tag, if tags are not
+    part of the states. `tags` has one text for each state: the tags it requests, with blanks between them; it
     is empty if tags are not part of the states. `lengths` has the mean and standard deviation of each state's
     actions, in seconds; it is empty if they are unknown. `modes` has one row for each mode, in the order of
     `words.MODES`: the shares, 0 to 1, of the written gestures, fidgets and transitions that are performed in
@@ -372,7 +372,7 @@ class Markov:
     modes: tuple[tuple[float, ...], ...] = ()
 
     def tag(self, state: int) -> str:
-        """Return the tags that a state asks for, "" for none."""
+        """Return the tags that a state requests, "" for none."""
         return self.tags[state] if self.tags else ""
 
 
@@ -381,12 +381,12 @@ class Settings:
     """The planner's constants.
 
     `alpha` says how quickly a used action becomes unlikely (4 in the paper). `seed` has 32 bits. With
-    `never_twice`, an action is not played twice in a row if there is another. `shortest` is the least number
-    of seconds for which the remainder of a cut meta action is kept. `wait` is how many seconds late a request
-    may start. `memory` is the number of seconds after which a use no longer counts, 0 for never (as in the
-    paper). `rest` is the least number of seconds in the stance between two actions of a layer. A running plan
-    is not changed for the next `lookahead` seconds. `variety`, 0..4, multiplies the times of
-    `planning.director`, so how seldom actions repeat and stances change; 0 for as often as in the paper.
+    `never_twice`, an action is not played twice in a row if there is another. `shortest` is the minimum
+    length, in seconds, of a remainder that is kept when a meta action is cut. `wait` is how many seconds late
+    a request may start. `memory` is the number of seconds after which a use no longer counts, 0 for never (as
+    in the paper). `rest` is the least number of seconds in the stance between two actions of a layer. A
+    running plan is not changed for the next `lookahead` seconds. `variety`, 0..4, multiplies the times of
+    `planning.director`, which decide how rarely actions repeat and stances change; 0 is as in the paper.
     """
 
     alpha: float = 4.0
@@ -411,15 +411,15 @@ class Project:
     `roles` (role -> joint name) and `parts` (joint name -> body part) are corrections. `character` is the
     path of the GLB to draw, relative to the project file, or None for the default body; `hidden` names
     its meshes that are not drawn. `points` are named places to look at, in metres. `props` are things
-    that are drawn beside the character, by id. `lines` is the dialogue that an agent calls by id.
-    `performances` and `conversations` are kept by id, and `timelines` holds their markers and other notes
-    by the same ids. `tiers` says for each annotation tier what it was last read as. `notes` are texts by
-    the id of their action, "" for the project's own. `marks` identify clips so that they are found again,
-    by clip id. `joint_maps` say how clips of other skeletons are retargeted, by the
-    `joint_map.make_fingerprint` of those. `language` is the code of the language that conversations are
-    read in ("de"), or "auto" to detect it from their words. `manual` has the state machines drawn by
-    hand, by layer. `voices` has the analysed sound of each line (`playback.life.voice.Voice`) that was
-    read so far; it is never saved. `touch` says whether contacts hold and hands stay outside the body.
+    drawn beside the character, by id. `lines` is the dialogue that an agent calls by id. `performances`
+    and `conversations` are kept by id, and `timelines` holds their markers and other notes by the same
+    ids. `tiers` says how each annotation tier was last read. `notes` are texts by the id of their action,
+    "" for the project's own. `marks` identify clips so that they are found again, by clip id.
+    `joint_maps` say how clips of other skeletons are retargeted, by the `joint_map.make_fingerprint` of
+    those. `language` is the code of the language that conversations are read in ("de"), or "auto" to
+    detect it from their words. `manual` has the state machines drawn by hand, by layer. `voices` has the
+    analysed sound (`playback.life.voice.Voice`) of each line read so far; it is never saved. `touch` says
+    whether contacts hold and hands stay outside the body.
     """
 
     name: str = "untitled"

@@ -78,7 +78,10 @@ class _Match:
             other = project.names[here] if here >= 0 else "nothing"
             if one != other:
                 return phrase(
-                    "joint '{name}' hangs on '{one}' instead of '{other}'", name=name, one=one, other=other
+                    "joint '{name}' is attached to '{one}' instead of '{other}'",
+                    name=name,
+                    one=one,
+                    other=other,
                 )
         between = sum(len(chain) - 1 for chains in (self.own, self.ours) for chain in chains.values())
         if between > _BETWEEN:

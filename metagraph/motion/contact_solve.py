@@ -1,8 +1,8 @@
-"""Keeping hands in contact with the body, and out of it: two-bone arms brought to where they should be.
+"""Keep hands in contact with the body, and outside it, by moving two-bone arms to their goals.
 
-The body's parts are capsules, each fixed to a joint. Rotations are quaternions xyzw, lengths metres; places
-are those in a rig's list of joints. Worked out one pose at a time, in plain numbers, the same in all
-languages.
+The body's parts are capsules, each fixed to a joint. Rotations are quaternions xyzw, lengths metres; a place
+is an index into a rig's list of joints. The code computes one pose at a time, with plain numbers, the same in
+all languages.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ HAND = 2  # pushed out
 
 @dataclass(frozen=True)
 class ContactArm:
-    """Places of an arm's joints, and of all joints from its upper arm on, parents first."""
+    """The places of an arm's joints, and of all joints from its upper arm on, parents first."""
 
     upper: int
     lower: int
@@ -52,9 +52,9 @@ class ContactArm:
 
 @dataclass(frozen=True)
 class BodyCapsule:
-    """A part of the body. joint, to: the places its line's ends are fixed to; a, b: where, in those joints'
-    own spaces. arm: 0 left, 1 right, -1 of neither. kind: whether it is pushed out of others: OBSTACLE is
-    not; FOREARM runs from the elbow to the wrist; HAND.
+    """A part of the body. joint, to: the places of the joints that carry the ends of its line; a, b: where
+    the ends are, in the spaces of those joints. arm: 0 left, 1 right, -1 neither. kind: whether it is pushed
+    out of others: an OBSTACLE is not; a FOREARM, from the elbow to the wrist, and a HAND are.
     """
 
     joint: int
@@ -68,9 +68,9 @@ class BodyCapsule:
 
 @dataclass(frozen=True)
 class ContactRig:
-    """What of a skeleton contacts need. joints: theirs, parents first. parents: for each the place of the
-    nearest one above, which has to be its parent; -1 for a root. places: names of joints to their places.
-    arms: left, right; hands: the names of their hands. contacts, guard: what is on.
+    """The part of a skeleton that contacts need. joints: parents first. parents: for each joint, the place of
+    its parent, -1 for a root. places: joint name -> place. arms: left, right; hands: the names of their
+    hands. contacts, guard: whether each is on.
     """
 
     joints: tuple[int, ...]
@@ -96,8 +96,8 @@ class HandGoal:
 
 @dataclass
 class ContactPose:
-    """A pose of a rig's joints: `local` rotations and `moved` translations in their parents' space, `turned`
-    and `at` in the character's, which `spread` works out.
+    """A pose of a rig's joints: `local` rotations and `moved` translations are in the parents' space;
+    `turned` and `at` are in the character's space, and `spread` computes them.
     """
 
     local: list[Quaternion] = field(default_factory=list)
@@ -107,7 +107,7 @@ class ContactPose:
 
 
 def spread(rig: ContactRig, pose: ContactPose) -> None:
-    """Work out where all joints are."""
+    """Compute where all joints are."""
     pose.turned = []
     pose.at = []
     for place, turn in enumerate(pose.local):
@@ -128,8 +128,8 @@ def _join(rig: ContactRig, pose: ContactPose, place: int) -> None:
 
 
 def solve_contacts(rig: ContactRig, pose: ContactPose, goals: Sequence[HandGoal]) -> bool:
-    """Bring hands to their goals, then hands and forearms out of the body; return whether anything moved. The
-    joints' places have to be known (`spread`).
+    """Move hands to their goals, then push hands and forearms out of the body; return whether anything moved.
+    Call `spread` first.
     """
     moved = False
     held = [0.0, 0.0]
@@ -164,7 +164,7 @@ def _on_arm(rig: ContactRig, place: int, arm: int) -> bool:
 def _hold(
     rig: ContactRig, pose: ContactPose, goals: Sequence[HandGoal], side: int, wrist: Vector, hand: Quaternion
 ) -> None:
-    """Bring a hand to the weighted mean of its goals. wrist, hand: where and how it was without any."""
+    """Move a hand to the weighted mean of its goals. wrist, hand: its position and rotation without goals."""
     total = 0.0
     x, y, z = 0.0, 0.0, 0.0
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
@@ -189,7 +189,7 @@ def _hold(
 
 
 def _within_wrist(hand: Quaternion, turn: Quaternion) -> Quaternion:
-    """Return a hand's turn, as near to it as the wrist may be turned from how the hand was."""
+    """Return a hand's rotation, limited to what the wrist allows from the hand's earlier rotation."""
     x, y, z, w = times(turn, back(hand))
     if w < 0.0:
         x, y, z, w = -x, -y, -z, -w
@@ -202,8 +202,8 @@ def _within_wrist(hand: Quaternion, turn: Quaternion) -> Quaternion:
 def bring(
     rig: ContactRig, pose: ContactPose, side: int, goal: Vector, hand: Quaternion, side_of: Vector
 ) -> None:
-    """Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it.
-    side_of: where a straight arm bends to, in the upper arm's own space.
+    """Move a wrist to a goal, or as near as the arm reaches, with the elbow on the side to which it is bent;
+    rotate the hand. side_of: the direction in which a straight arm bends, in the upper arm's own space.
     """
     arm = rig.arms[side]
     root, elbow, wrist = pose.at[arm.upper], pose.at[arm.lower], pose.at[arm.hand]
@@ -250,11 +250,11 @@ def _above(rig: ContactRig, pose: ContactPose, place: int) -> Quaternion:
 
 
 def _guarded(rig: ContactRig, pose: ContactPose, held: Sequence[float], across: float) -> bool:
-    """Push forearms and hands out of what they are inside of, by the least shift of the wrists; return
-    whether any was. held: how much each hand is kept somewhere, and so is not pushed.
+    """Push forearms and hands out of the capsules they are inside, by the smallest shift of the wrists;
+    return whether any was inside. held: how much a contact holds each hand, which is then not pushed.
 
-    An arm that goes through something is pushed out to one side before its middle and to the other after:
-    towards the middle it is pushed ever less, so that it does not jump.
+    An arm that passes through a capsule is pushed to one side before the middle and to the other side after
+    it. The push gets weaker towards the middle, so that the arm does not jump.
     """
     local, turned, at = list(pose.local), list(pose.turned), list(pose.at)
     whole = [1.0, 1.0]
@@ -315,8 +315,8 @@ def _shift(
     whole: list[float],
     first: bool,
 ) -> Vector:
-    """Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for
-    each side how much of that is to be done, which the first pass finds.
+    """Return the shift of a wrist that brings its arm out of all other capsules, or closer to that. whole:
+    for each side, the share of the shift to apply, which the first pass finds.
     """
     shift = (0.0, 0.0, 0.0)
     own = 1.0 - held[side]
@@ -362,8 +362,8 @@ def _shift(
 
 
 def _along(ends: Sequence[Vector], i: int, k: int) -> float:
-    """Return how far along the line that begins at `ends[i]` the shortest way from that at `ends[k]` ends,
-    0..1. Of lines side by side, where it may end anywhere, the middle counts more the less they cross.
+    """Return where on the line that begins at `ends[i]` the shortest way from the line at `ends[k]` ends,
+    0..1. For nearly parallel lines, where it could end anywhere, the result moves towards the middle.
     """
     a, c = ends[i], ends[k]
     u, v, w = minus(ends[i + 1], a), minus(ends[k + 1], c), minus(a, c)
@@ -381,7 +381,9 @@ def _along(ends: Sequence[Vector], i: int, k: int) -> float:
 
 
 def apart(ends: Sequence[Vector], i: int, k: int) -> Quaternion:
-    """Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, and its length."""
+    """Return the shortest way from the line that begins at `ends[k]` to the one at `ends[i]`, and
+    its length.
+    """
     a, c = ends[i], ends[k]
     u, v, w = minus(ends[i + 1], a), minus(ends[k + 1], c), minus(a, c)
     uu, uv, vv, uw, vw = dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w)

@@ -1,6 +1,6 @@
-"""Contacts of an action: where on the body a hand stays, or goes along, for a while of its clip.
+"""Contacts of an action: where on the body a hand stays, or moves along it, for a part of its clip.
 
-A contact says where the wrist is in the space of a joint, and how the hand is turned there, so that it holds
+A contact gives the position of the wrist and the rotation of the hand in the space of a joint. So it holds
 whatever else moves that joint: a breathing spine, a layer below, a body of another shape.
 """
 
@@ -13,7 +13,7 @@ from metagraph.motion.plain_vectors import Quaternion, Vector
 
 HANDS: tuple[str, ...] = ("left", "right")
 PLACES: tuple[str, ...] = ("palm", "fingertips", "back", "wrist")
-EASE = 0.15  # seconds in which a hand comes to a contact, and leaves it, where nothing else is said
+EASE = 0.15  # seconds in which a hand comes to a contact, and leaves it, by default
 SETTLES = 0.3  # seconds it takes at least where the contact lasts: what it touches may be far from its place
 
 
@@ -30,12 +30,12 @@ class ContactKey:
 
 @dataclass(frozen=True, slots=True)
 class ContactSpan:
-    """A hand kept where it is on the body.
+    """A hand that stays at a place on the body.
 
-    hand: left or right. place: what of the hand touches: palm, fingertips, back, wrist. to: the name of the
-    joint it stays with. start, end: clip seconds. keys: one for a hand that stays, more, in order, for one
-    that moves over the body. ease_in, ease_out: seconds inside the span in which it comes and goes; none
-    where the action begins, or ends, within the span.
+    hand: left or right. place: the part of the hand that touches: palm, fingertips, back, wrist. to: the name
+    of the joint it stays with. start, end: clip seconds. keys: one for a hand that stays, more, in order, for
+    one that moves over the body. ease_in, ease_out: seconds inside the span in which the contact sets in and
+    fades out; they do not apply if the action begins, or ends, within the span.
     """
 
     hand: str
@@ -49,7 +49,9 @@ class ContactSpan:
 
 
 def contact_weight(span: ContactSpan, seconds: float, first: float, last: float) -> float:
-    """Return how much a hand is held at clip seconds, 0..1. first, last: what of the clip plays."""
+    """Return how much a hand is held at a second of the clip, 0..1. first, last: the seconds of the clip that
+    play.
+    """
     if seconds < span.start or seconds > span.end:
         return 0.0
     shown = 1.0
@@ -64,7 +66,7 @@ def contact_weight(span: ContactSpan, seconds: float, first: float, last: float)
 
 
 def contact_key(span: ContactSpan, seconds: float) -> ContactKey:
-    """Return where a hand is at clip seconds: between two keys on the straight line."""
+    """Return where a hand is at a second of the clip, interpolated linearly between two keys."""
     before = span.keys[0]
     for after in span.keys:
         if after.time >= seconds:

@@ -1,8 +1,8 @@
-"""Bringing feet to where they should stand: two-bone legs whose knees keep their direction, under hips that
-come along and sink rather than let a leg snap straight.
+"""Move feet to where they should stand, with two-bone legs whose knees keep their direction. The hips move
+along and sink, so that no leg snaps straight.
 
-Rotations are quaternions xyzw, lengths metres. Worked out one pose at a time, in plain numbers, the same in
-all languages. All amounts are ours, chosen by eye.
+Rotations are quaternions xyzw, lengths metres. The code computes one pose at a time, with plain numbers, the
+same in all languages. All amounts are ours, chosen by eye.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ TURNING = 0.15  # metres that a turn of a radian counts as way
 
 @dataclass(frozen=True)
 class FootGoal:
-    """Where a foot's joint should be, in the character's space. planted: how much it stands there, 0..1.
-    lift: metres that a step has it above that.
+    """Where a foot's joint should be, in the character's space. planted: how firmly it stands there, 0..1.
+    lift: height of a step above that, metres.
     """
 
     at: Vector
@@ -48,7 +48,7 @@ class FootGoal:
 
 
 def foot_way(a: FootGoal, b: FootGoal) -> float:
-    """Return how far it is from one place of a foot to another, metres, a turn counted in."""
+    """Return the distance between two places of a foot, in metres; a rotation counts as a distance, too."""
     ax, ay, az, aw = a.turn
     bx, by, bz, bw = b.turn
     along = abs(ax * bx + ay * by + az * bz + aw * bw)
@@ -57,8 +57,8 @@ def foot_way(a: FootGoal, b: FootGoal) -> float:
 
 
 def plant_feet(rig: WeightRig, pose: ContactPose, goals: Sequence[FootGoal], strength: float) -> bool:
-    """Bring feet to their goals, as much as those are planted; return whether anything moved. goals: left,
-    right, or none. strength: the dial. Joints' places need not be known.
+    """Move feet to their goals, as far as these are planted; return whether anything moved. goals: left and
+    right, or none. strength: the user's dial. You need not call `spread` first.
     """
     if len(goals) != 2 or strength <= 0.0:
         return False

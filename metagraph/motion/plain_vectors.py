@@ -1,5 +1,5 @@
-"""Vectors and turns as plain tuples, for what is worked out one pose at a time, the same in all languages.
-Vectors are x, y, z; quaternions xyzw, of length 1.
+"""Vectors and rotations as plain tuples, for code that computes one pose at a time, the same in all
+languages. Vectors are x, y, z; quaternions xyzw, of length 1.
 """
 
 from __future__ import annotations
@@ -45,13 +45,13 @@ def between(a: Vector, b: Vector) -> Quaternion:
 
 
 def length(v: Vector) -> float:
-    """Return how long a vector is."""
+    """Return the length of a vector."""
     x, y, z = v
     return sqrt(x * x + y * y + z * z)
 
 
 def unit(v: Vector) -> Vector:
-    """Return a vector of length 1 in a direction; of no length where there is none."""
+    """Return a vector of length 1 in the same direction; the zero vector stays as it is."""
     return scaled(v, 1.0 / max(length(v), 1e-12))
 
 
@@ -63,7 +63,7 @@ def unit_turn(q: Quaternion) -> Quaternion:
 
 
 def back(q: Quaternion) -> Quaternion:
-    """Return the turn back."""
+    """Return the inverse rotation."""
     x, y, z, w = q
     return (-x, -y, -z, w)
 

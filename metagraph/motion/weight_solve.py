@@ -1,11 +1,11 @@
-"""How a standing body answers its arms: hips give way, spine and legs make up for it, feet stay.
+"""How a standing body reacts to its arms: the hips give way, spine and legs compensate, and the feet stay.
 
-Rotations are quaternions xyzw, lengths metres; places are those in a rig's list of joints. Worked out one
-pose at a time, in plain numbers, the same in all languages.
+Rotations are quaternions xyzw, lengths metres; a place is an index into a rig's list of joints. The code
+computes one pose at a time, with plain numbers, the same in all languages.
 
-By how much: whoever stands keeps the centre of mass over the feet, so the hips go as far back as the arms
-carry it ahead (de Leva 1996 has what each segment weighs; that trunk and legs move against a raised arm:
-Bouisset and Zattara 1987). The other amounts are ours, chosen by eye on the sample.
+How much: a standing person keeps the centre of mass over the feet, so the hips move back as far as the arms
+move it ahead. The weight of each segment is from de Leva 1996. That trunk and legs move against a raised arm
+is from Bouisset and Zattara 1987. The other amounts are ours, chosen by eye on the sample.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from metagraph.motion.plain_vectors import (
     times,
 )
 
-BALANCE = 1.4  # of how far the arms carry the centre of mass away, the hips give way
-HASTE = 0.12  # seconds of the arms' speed that add to that
+BALANCE = 1.4  # factor of the arms' shift of the centre of mass by which the hips compensate
+HASTE = 0.12  # seconds of the arms' speed that are added to the shift
 DIP = 0.05  # seconds: arms that rise this fast press the body down, half as far at most
 SPIN = 30.0  # seconds: how far the pelvis turns against what arms turn about the vertical
 ROLL = 3.0  # radians that the pelvis rolls for a shift to a side of its own height, and
@@ -44,7 +44,7 @@ GIVE = 0.5  # of a shift: over so much a leg's full length makes itself felt
 @dataclass(frozen=True)
 class WeightBend:
     """A joint that turns. left, up, ahead: the character's directions in its own space. share: of the hips'
-    turn, below 0 against it.
+    rotation, below 0 for the opposite direction.
     """
 
     place: int
@@ -68,10 +68,11 @@ class WeightCollar:
 
 @dataclass(frozen=True)
 class WeightRig:
-    """What of a skeleton answers its arms. body: joints, its `arms` being the legs, left and right, its
-    `hands` the names of the hands. bends: from the hips up. knees: where straight legs bend to, in the upper
-    legs' own spaces. levers: how far to the left and ahead of the hips arms are. up: the character's
-    up. height: of the figure, metres. strength: how much of the arms' layer counts, 0..1.
+    """The part of a skeleton that reacts to its arms. body: its joints; its `arms` are the legs, left and
+    right, its `hands` the names of the hands. bends: from the hips up. knees: the direction in which straight
+    legs bend, in the upper legs' own spaces. levers: how far the arms are to the left and ahead of the hips.
+    up: the character's up direction. height: of the figure, metres. strength: how much of the arms' layer
+    counts, 0..1.
     """
 
     body: ContactRig
@@ -85,16 +86,17 @@ class WeightRig:
 
 
 def moves_body(drive: Sequence[float]) -> bool:
-    """Whether there is anything to answer."""
+    """Return whether there is anything to react to."""
     return any(x != 0.0 for x in drive)
 
 
 def answer_arms(
     rig: WeightRig, pose: ContactPose, drive: Sequence[float], follow: float, lift: float
 ) -> bool:
-    """Change a pose of the rig's joints by what its arms do; return whether it did.
+    """Change a pose of the rig's joints in reaction to its arms; return whether it changed.
 
-    drive: as `posing.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
+    drive: as `posing.follow_through.driven` returns it. follow, lift: the user's dials. You need not call
+    `spread` first.
     """
     follow = follow * rig.strength
     lift = lift * rig.strength
@@ -115,7 +117,7 @@ def answer_arms(
 
 
 def stands_by(rig: WeightRig, pose: ContactPose) -> float:
-    """Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs."""
+    """Return how much a figure stands: 0 if it sits or lies, 1 on straight legs."""
     least = 1.0
     for leg in rig.body.arms:
         hip, knee, ankle = pose.at[leg.upper], pose.at[leg.lower], pose.at[leg.hand]
@@ -127,7 +129,7 @@ def stands_by(rig: WeightRig, pose: ContactPose) -> float:
 
 
 def _give_way(rig: WeightRig, pose: ContactPose, drive: Sequence[float], follow: float) -> None:
-    """Shift and turn the hips, undo that in the spine, and bring the legs back to where the feet were."""
+    """Shift and rotate the hips, undo that in the spine, and move the legs so that the feet stay."""
     body = rig.body
     vx, vy, vz = drive[8] + drive[11], drive[9] + drive[12], drive[10] + drive[13]
     spin = 0.0
@@ -167,8 +169,8 @@ def _give_way(rig: WeightRig, pose: ContactPose, drive: Sequence[float], follow:
 
 
 def hips_sink(rig: WeightRig, pose: ContactPose, side: int, foot: Vector, reach: float, soft: float) -> float:
-    """Return by how much the hips have to sink for a foot to be within a leg's reach; from a little before
-    that on, so that it sets in gently. reach: how far hip and foot were apart.
+    """Return how far the hips have to sink so that the leg reaches the foot. It sets in gently, a little
+    before the limit. reach: the distance of hip and foot before.
     """
     leg = rig.body.arms[side]
     hip, knee, ankle = pose.at[leg.upper], pose.at[leg.lower], pose.at[leg.hand]
@@ -186,12 +188,12 @@ def hips_sink(rig: WeightRig, pose: ContactPose, side: int, foot: Vector, reach:
 
 
 def _soft(x: float, most: float) -> float:
-    """Return a number that never gets to `most`, and is itself where small."""
+    """Return a number limited smoothly to below `most`; small numbers stay almost as they are."""
     return x / sqrt(1.0 + (x / most) * (x / most))
 
 
 def _turn(axis: Vector, angle: float) -> Quaternion:
-    """Return the turn about an axis by its length times an angle, radians."""
+    """Return the rotation about an axis by its length times an angle, radians."""
     x, y, z = axis
     size = length(axis)
     if size <= 0.0:

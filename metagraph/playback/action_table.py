@@ -239,7 +239,9 @@ def _split_tags(text: str) -> tuple[str, ...]:
 
 Rows = Mapping[str, Mapping[Column, str]]
 _GONE = phrase("it is no longer in the project")
-_NEEDS_END = phrase("a transition needs the stance it ends in: write that, and it becomes one")
+_NEEDS_END = phrase(
+    "a transition needs the stance it ends in: write the stance, and the action becomes a transition"
+)
 
 
 def _write_half_labels(project: Project, rows: Rows, refused: dict[Cell, str]) -> Project:
@@ -318,7 +320,7 @@ def _find_target(
 
 def _no_stance(layer: Layer, name: str) -> str:
     return phrase(
-        "the {layer} layer has no stance '{name}'; a row of kind stance makes it",
+        "the {layer} layer has no stance '{name}'; a row of the kind stance creates it",
         layer=phrase(layer),
         name=name,
     )

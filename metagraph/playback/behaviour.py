@@ -195,9 +195,9 @@ def _rests(plan: Plan, seconds: float) -> list[BehaviourRow]:
     gaps = [b.start - a.start for a, b in pairwise(cues)] or [seconds]
     second = phrase("s")
     return [
-        BehaviourRow(phrase("Rests of the arms, half are shorter than"), median(rests), second),
+        BehaviourRow(phrase("Half of the rests of the arms are shorter than"), median(rests), second),
         BehaviourRow(
-            phrase("Rests of the arms, nine in ten are shorter than"),
+            phrase("Nine in ten rests of the arms are shorter than"),
             sorted(rests)[int(0.9 * (len(rests) - 1))],
             second,
         ),
@@ -232,7 +232,7 @@ def _face(plan: Plan, mode: Mode, seconds: float) -> list[BehaviourRow]:
             1.0,
         ),
         BehaviourRow(
-            phrase("Looks at the other"),
+            phrase("Looks at the other person"),
             1.0 - away / seconds,
             phrase("of the time"),
             least,

@@ -286,7 +286,7 @@ class _Findings:
                 remedy = (
                     phrase("Lengthen the blend in the timing editor, or start the action nearer its stance.")
                     if cause.blending
-                    else phrase("Look at the clip there: trim it, or smooth it in the program it is from.")
+                    else phrase("Look at the clip there: trim it, or smooth it in the program that made it.")
                 )
                 yield self._problem("play-jump", words, remedy, frame + 1, cause)
 
@@ -304,7 +304,7 @@ class _Findings:
             part=_NAMES[part],
             length=far,
         )
-        remedy = phrase("If that is a fault, trim the clip or smooth it in the program it is from.")
+        remedy = phrase("If that is a fault, trim the clip or smooth it in the program that made it.")
         return self._problem("clip-jump", words, remedy, frame, cause, "warning" if alone else "hint")
 
     def _added(self) -> Iterator[Problem]:
@@ -338,7 +338,7 @@ class _Findings:
                 if not cause.blending or OWN * value <= own:
                     continue
                 words = phrase(
-                    "{part} goes {speed:.1f} m/s, and at most {usual:.1f} m/s in the clips",
+                    "{part} moves at {speed:.1f} m/s, but at most at {usual:.1f} m/s in the clips",
                     part=_NAMES[name],
                     speed=value,
                     usual=float(self.speeds[part]),
@@ -412,12 +412,12 @@ class _Findings:
                     share=100 * share,
                 )
             )
-            remedy = phrase("Set the height of the clip in the program it is from, or skip the clip.")
+            remedy = phrase("Set the height of the clip in the program that made it, or skip the clip.")
             severity: Severity = "error" if share > LASTING else "warning"
             if code == "play-no-seat":
                 words = phrase("the character sits with its feet {length:.0f} cm above the floor", length=far)
                 remedy = phrase(
-                    "Put a seat under it in your scene, or lower the clip in the program it is from."
+                    "Put a seat under it in your scene, or lower the clip in the program that made it."
                 )
                 severity = "hint"
             yield self._problem(code, words, remedy, worst, causes[key], severity)

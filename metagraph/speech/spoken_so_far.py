@@ -1,4 +1,6 @@
-"""What of an utterance was spoken until a moment, for the history that a language model goes on from."""
+"""The part of an utterance that was spoken until a moment, for the history from which a language model
+continues.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +14,8 @@ from metagraph.speech.word_gestures import telling, words_of
 
 
 def spoken_until(alphabet: Alphabet, said: Sequence[Speech], ident: str, seconds: float) -> tuple[str, str]:
-    """Return what of an utterance was spoken until `seconds`, up to the word that was begun, and that word;
-    "" where nothing was. said: everything, by start.
+    """Return the part of an utterance that was spoken until `seconds`, up to the word that was begun, and
+    that word; "" if nothing was spoken. said: all speeches, by start.
     """
     text, last = "", ""
     paced = False
@@ -30,8 +32,8 @@ def spoken_until(alphabet: Alphabet, said: Sequence[Speech], ident: str, seconds
 
 
 def _pieces(said: Sequence[Speech], ident: str, seconds: float) -> list[Speech]:
-    """Return the pieces of the utterance of an id that was said last; one that goes on after a pause is
-    one.
+    """Return the pieces of the last utterance with an id; one that continues after a pause is one
+    utterance.
     """
     out: list[Speech] = []
     for piece in said:
@@ -46,7 +48,7 @@ def _pieces(said: Sequence[Speech], ident: str, seconds: float) -> list[Speech]:
 
 
 def _spoken_of(alphabet: Alphabet, piece: Speech, seconds: float) -> tuple[str, str]:
-    """Return what of one piece was spoken in its first `seconds`, and the last word of that."""
+    """Return the part of one piece that was spoken in its first `seconds`, and its last word."""
     letters = alphabet.letters(piece.text)
     words: list[SpokenWord] = []
     if piece.timing is not None and len(piece.timing.words) > 0:
@@ -75,12 +77,12 @@ def _spoken_of(alphabet: Alphabet, piece: Speech, seconds: float) -> tuple[str, 
 
 
 def _parts(alphabet: Alphabet, letter: str) -> bool:
-    """Whether a letter behind a word is no mark of it."""
+    """Return whether a letter after a word is not a mark that belongs to it."""
     return alphabet.stripped(letter) == "" or telling(alphabet, [letter])
 
 
 def _end_of_letters(letters: Sequence[str], word: Sequence[str], first: int) -> int:
-    """Return the place behind a word in a text, from `first` on; -1 where it is not there."""
+    """Return the index after a word in a text, searching from `first`; -1 if it is not there."""
     for start in range(first, len(letters) - len(word) + 1):
         if all(letters[start + n] == letter for n, letter in enumerate(word)):
             return start + len(word)

@@ -1,10 +1,10 @@
-"""Gestures that go with words, from the words alone: greetings, denial, doubt, contrast, lists, who and where
-is meant, emphasis, and a beat where nothing of that is said.
+"""Gestures that go with words, from the words alone: greetings, denial, doubt, contrast, lists, persons and
+places, emphasis, and a beat where there is none of these.
 
 After the idea of BEAT (Cassell, Vilhjalmsson and Bickmore, 2001): a text's words propose gestures by rules
-and a lexicon that anybody can edit, and of those that would get in each other's way the weaker are left out.
-A gesture that means something leads its word by more than a beat does (ter Bekke et al. 2024: its stroke by
-some 0.2 s). All other numbers are ours. Times are seconds from where the text begins.
+and a lexicon that anybody can edit, and the weaker ones of those that would collide are left out. A gesture
+with a meaning precedes its word by more than a beat does (ter Bekke et al. 2024: its stroke by some 0.2 s).
+All other numbers are ours. Times are seconds from where the text begins.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ CLOSING = "\"')”»"  # what may stand between a word and the mark behind it
 
 @dataclass(frozen=True, slots=True)
 class GestureRule:
-    """What some words propose. words: small letters; several in a row for a phrase. tags: of a gesture of the
-    arms, the best first; of those a character has the first counts. head: what it does at the same time,
-    "nod", "shake" or nothing. strength: which of two wins.
+    """A gesture that some words propose. words: small letters; several in a row for a phrase. tags: of a
+    gesture of the arms, the best first; the first one that the character has counts. head: its movement at
+    the same time: "nod", "shake" or nothing. strength: the stronger of two rules wins.
     """
 
     words: tuple[str, ...] = ()
@@ -50,8 +50,8 @@ class GestureRule:
 
 @dataclass(frozen=True, slots=True)
 class GestureWords:
-    """A lexicon. question, exclamation: what a sentence's end proposes for its last word that is not small.
-    clause: what one proposes in which no word does.
+    """A lexicon. question, exclamation: proposed at the end of a sentence, for its last content word. clause:
+    proposed for a clause without other proposals.
     """
 
     rules: tuple[GestureRule, ...]
@@ -63,7 +63,7 @@ class GestureWords:
 
 @dataclass(frozen=True, slots=True)
 class TextWord:
-    """A word of a text. plain: in small letters. mark: what stands behind it."""
+    """A word of a text. plain: in small letters. mark: the punctuation after it."""
 
     text: str
     plain: str
@@ -74,7 +74,7 @@ class TextWord:
 
 @dataclass(frozen=True, slots=True)
 class ToldWord:
-    """When a synthesiser says a word."""
+    """A word with the times at which a synthesiser says it."""
 
     start: float
     end: float
@@ -82,8 +82,8 @@ class ToldWord:
 
 @dataclass(frozen=True, slots=True)
 class ProposedGesture:
-    """A gesture that goes with a word. do: "gesture", "nod" or "shake". at: of its stroke. tags: none for the
-    head's.
+    """A gesture that goes with a word. do: "gesture", "nod" or "shake". at: time of its stroke. tags: empty
+    for gestures of the head.
     """
 
     layer: str
@@ -96,8 +96,8 @@ class ProposedGesture:
 
 @dataclass(frozen=True, slots=True)
 class GestureAsk:
-    """What is asked for a gesture. at: seconds of the session, from which on it may begin. stroke: when its
-    stroke is wanted, None for the head's. late: by how much it may come late.
+    """The request for a gesture. at: the earliest second of the session at which it may begin. stroke: the
+    time of its stroke, None for the head. late: by how many seconds it may come late.
     """
 
     do: str
@@ -110,7 +110,7 @@ class GestureAsk:
 
 @dataclass(frozen=True, slots=True)
 class SplitWord:
-    """A word, how many letters of the text there are up to its end, and the mark behind it."""
+    """A word, the number of letters of the text up to its end, and the mark after it."""
 
     text: str
     end: int
@@ -120,10 +120,10 @@ class SplitWord:
 def words_of(
     alphabet: Alphabet, text: str, told: Sequence[ToldWord] = (), seconds: float | None = None
 ) -> list[TextWord]:
-    """Return a text's words with their times: as a synthesiser told them, else as long as lips would take.
+    """Return a text's words with their times: those of a synthesiser, else as long as lips would take.
 
-    told: of the words in order; those beyond are left out. seconds: how long all of it takes, where that
-    alone is known.
+    told: the times of the words in order; words without times are left out. seconds: how long all of it
+    takes, if only that is known.
     """
     letters = alphabet.letters(text)
     pace = 1.0
@@ -152,7 +152,7 @@ def _is_letter(alphabet: Alphabet, letter: str) -> bool:
 
 
 def telling(alphabet: Alphabet, letters: Sequence[str]) -> bool:
-    """Whether there are words among letters, so that there is something to say."""
+    """Return whether letters contain words, so that there is something to say."""
     return any(_is_letter(alphabet, letter) for letter in letters)
 
 
@@ -189,10 +189,10 @@ def proposed_for(
     small: AbstractSet[str],
     seed: Bits,
 ) -> list[ProposedGesture]:
-    """Return the gestures that go with words, in order, none in another's way.
+    """Return the gestures that go with words, in order and without collisions.
 
-    arms: tags that a character's gestures of the arms have; what it has none for is not proposed. head:
-    whether the head moves. small: words that say little by themselves.
+    arms: tags of the character's gestures of the arms; others are not proposed. head: whether the head moves.
+    small: words that say little by themselves.
     """
     every: list[ProposedGesture] = []
     clause: list[TextWord] = []
@@ -220,8 +220,8 @@ def proposed_for(
 
 
 def _fitting(lexicon: GestureWords, words: Sequence[TextWord], n: int) -> tuple[GestureRule, int]:
-    """Return the rule with the longest phrase that begins at a word, and how many words that has; 0 where
-    none does.
+    """Return the rule with the longest phrase that begins at a word, and the number of its words; 0 if there
+    is none.
     """
     best, longest = lexicon.clause, 0
     for rule in lexicon.rules:
@@ -233,7 +233,7 @@ def _fitting(lexicon: GestureWords, words: Sequence[TextWord], n: int) -> tuple[
 
 
 def _says(words: Sequence[TextWord], first: int, parts: Sequence[str]) -> bool:
-    """Whether a phrase is said from a word on, and not over a pause."""
+    """Return whether a phrase begins at a word, without a pause inside it."""
     if first + len(parts) > len(words):
         return False
     for k, part in enumerate(parts):
@@ -256,8 +256,8 @@ def _of(rule: GestureRule, word: TextWord, arms: AbstractSet[str], head: bool) -
 
 
 def _spaced(every: Sequence[ProposedGesture]) -> list[ProposedGesture]:
-    """Leave out what is too near to something stronger of its layer; of equals the earlier stays. The same
-    tag twice in a row needs more room.
+    """Leave out gestures that are too near to a stronger one of their layer; of two equal ones the earlier
+    stays. The same tag twice in a row needs more room.
     """
     kept: list[ProposedGesture] = []
     for one in sorted(every, key=lambda one: (-one.strength, one.at)):
@@ -276,8 +276,8 @@ def _in_the_way(one: ProposedGesture, other: ProposedGesture) -> bool:
 
 
 def gesture_asks(every: Sequence[ProposedGesture], at: float) -> list[GestureAsk]:
-    """Return what is asked for gestures of a text that begins at `at` seconds of the session. Those that
-    could not be in time are refused rather than made late.
+    """Return the requests for the gestures of a text that begins at `at` seconds of the session. Gestures
+    that cannot be in time are refused, not made late.
     """
     out: list[GestureAsk] = []
     for one in every:
@@ -290,8 +290,8 @@ def gesture_asks(every: Sequence[ProposedGesture], at: float) -> list[GestureAsk
 
 
 def sentence_end(alphabet: Alphabet, letters: Sequence[str], over: bool) -> int:
-    """Return after how many letters the first sentence of a text ends, 0 where it goes on. over: whether the
-    text does not.
+    """Return the number of letters after which the first sentence of a text ends, 0 if it goes on. over:
+    whether the text is complete.
     """
     some = False
     for n, letter in enumerate(letters):

@@ -113,7 +113,7 @@ def _with_times(p: Proposal, motion: Clip, times: compatibility.ProposedTimes) -
     if _repeats(p):
         timing["repeat"] = usual_repeat(motion.duration)
         reasons["repeat"] = phrase(
-            "one cycle of {seconds:.2f} s, played {count} times, or for as long as a request asks for",
+            "one cycle of {seconds:.2f} s, played {count} times, or for as long as a request asks",
             seconds=motion.duration,
             count=round(timing["repeat"] / motion.duration),
         )
@@ -228,7 +228,7 @@ def with_likelihoods(project: Project, proposals: Mapping[str, Proposal]) -> dic
                 round(1 / count, 3),
                 0.8,
                 phrase(
-                    "one of {count} clips called '{words}', which share the weight of one",
+                    "one of {count} clips named '{words}', which share the weight of one",
                     count=count,
                     words=words,
                 ),
@@ -251,9 +251,7 @@ def with_rare_lying(proposals: Mapping[str, Proposal], traits: Mapping[str, Trai
         if p.kind.value != "transition" or body is None:
             continue
         if is_lying(body.names, body.last) and not is_lying(body.names, body.first):
-            why = phrase(
-                "ends on the ground, where nobody lies down while talking: it is rare unless requested"
-            )
+            why = phrase("ends on the ground; nobody lies down while talking, so it is rare unless requested")
             out[c] = replace(p, details={**p.details, "likelihood": Belief(RARE, 0.8, why)})
     return out
 

@@ -112,6 +112,24 @@ def test_a_translation_has_the_same_values_marks_and_keys(code: str) -> None:
         assert text.replace("&&", "").count("&") >= other.replace("&&", "").count("&"), text
 
 
+def test_german_says_sie() -> None:
+    familiar = re.compile(r"\b(du|dir|dich|dein|deine[mnrs]?)\b", re.IGNORECASE)
+    asking = re.compile(
+        r"(^|[.:;,>] ?|\bund |\boder )(wähle|lege|speichere|exportiere|prüfe|setze|füge|ziehe)\b", re.I
+    )
+    german = catalogue_texts("de").values()
+    found = [text for text in german if familiar.search(text) or asking.search(text)]
+    assert not found, "write 'Sie', 'Ihr', 'Wählen Sie'"
+
+
+def test_each_text_stands_in_a_call_of_tr_where_it_is_collected() -> None:
+    hidden = re.compile(r"partial\(\s*(tr|tr_plural|tr_noop|phrase)\b")
+    root = FOLDER.parent.parent
+    found = [path for folder in ("app", "metagraph", "preview") for path in (root / folder).rglob("*.py")]
+    found = [path for path in found if hidden.search(path.read_text(encoding="utf-8"))]
+    assert not found, 'write lambda: tr("..."), or no catalogue has the text'
+
+
 def test_what_checks_find_is_said_in_the_language_and_stays_english_for_programs(
     english: None, toy: Any
 ) -> None:
@@ -120,8 +138,8 @@ def test_what_checks_find_is_said_in_the_language_and_stays_english_for_programs
     (found,) = [p for p in check_project(project) if p.code == "likelihood"]
     assert tr_phrase(found.message) == found.message == "'rest beat lf' has likelihood -1 and never plays"
     translation.choose("de")
-    assert tr_phrase(found.message) == "'rest beat lf' hat die Häufigkeit -1 und spielt nie"
-    assert tr_phrase(found.remedy) == "Setze den Wert auf mehr als 0."
+    assert tr_phrase(found.message) == "„rest beat lf“ hat die Häufigkeit -1 und spielt nie"
+    assert tr_phrase(found.remedy) == "Setzen Sie den Wert auf mehr als 0."
     assert found.message == "'rest beat lf' has likelihood -1 and never plays"
 
 
@@ -132,7 +150,7 @@ def test_errors_are_said_in_the_language_as_far_as_they_know_their_templates(eng
     assert tr_error(caught.value) == "dieser Clip ist nicht mehr im Projekt"
     assert str(caught.value) == "that clip is no longer in the project"
     whole = FileError("some/a.bvh", phrase("nothing to mirror"), "line 3", phrase("Choose its states."))
-    assert tr_error(whole) == "a.bvh, line 3: nichts zu spiegeln. Wähle seine Zustände."
+    assert tr_error(whole) == "a.bvh, line 3: nichts zu spiegeln. Wählen Sie seine Zustände."
     assert str(whole) == "a.bvh, line 3: nothing to mirror. Choose its states."
     plain = FileError("a.bvh", "it is odd")
     assert tr_error(plain) == str(plain) == "a.bvh: it is odd."

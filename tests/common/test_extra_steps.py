@@ -80,7 +80,7 @@ def test_an_extra_comes_into_a_folder_of_its_own_and_can_be_imported(bundle, mon
     assert [words for _, words in told] == [
         "Starting…",
         "Looking for pylsl…",
-        "Loading pylsl, 0.5 MB…",
+        "Downloading pylsl, 0.5 MB…",
         "Unpacking pylsl…",
         "Installed.",
     ]
@@ -167,7 +167,7 @@ def test_an_extra_is_refused_where_the_disk_has_no_room(bundle, monkeypatch):
         free = 3e6
 
     monkeypatch.setattr(extra_steps.shutil, "disk_usage", lambda place: Full)
-    with pytest.raises(ExtraError, match=r"has 3 MB\. Make room"):
+    with pytest.raises(ExtraError, match=r"has 3 MB free\. Make room"):
         extra_steps.install_extra("lab")
 
 

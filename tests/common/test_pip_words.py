@@ -11,13 +11,13 @@ from metagraph.common.pip_words import describe_pip_line, explain_pip_failure, f
     ("line", "words", "size"),
     [
         ("Collecting numba>=0.60", "Looking for numba…", 0),
-        ("  Downloading numba-0.68.1-cp311-cp311-linux.whl (3.7 MB)", "Loading numba, 3.7 MB…", 3.7e6),
+        ("  Downloading numba-0.68.1-cp311-cp311-linux.whl (3.7 MB)", "Downloading numba, 3.7 MB…", 3.7e6),
         (
             "  Downloading numba-0.68.1-cp311-cp311-linux.whl.metadata (2.8 kB)",
-            "Loading numba, 0.0 MB…",
+            "Downloading numba, 0.0 MB…",
             2800,
         ),
-        ("  Using cached llvmlite-0.50.0-cp311-linux.whl (56 MB)", "Loading llvmlite…", 0),
+        ("  Using cached llvmlite-0.50.0-cp311-linux.whl (56 MB)", "Downloading llvmlite…", 0),
         ("Processing /a folder/ufbx-0.0.5-cp311.whl", None, 0),
         ("Processing ./ufbx-0.0.5-cp311.whl", "Reading ufbx…", 0),
         ("Installing collected packages: llvmlite, numba", "Unpacking llvmlite, numba…", 0),

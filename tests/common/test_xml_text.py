@@ -36,7 +36,7 @@ def test_what_xml_can_hold_stays_as_it_is(text: str) -> None:
 
 def test_what_is_replaced_is_counted_and_told() -> None:
     assert describe_replaced(["plain", {"a": ["b", 3, None]}]) is None
-    assert str(describe_replaced(["a\x00", {"k\x01": ["b\x02", "c"]}])).startswith("3 texts hold")
+    assert str(describe_replaced(["a\x00", {"k\x01": ["b\x02", "c"]}])).startswith("3 texts contain")
 
 
 def test_a_figure_with_control_characters_in_its_words_is_read() -> None:

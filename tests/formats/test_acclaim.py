@@ -66,7 +66,9 @@ def test_bones_lie_end_to_end_in_metres_and_turn_about_their_axes(tmp_path: Path
         [0, 6 * metres, 0], abs=1e-6
     )  # turned up
     assert place["lhand"][0] - place["lradius"][0] == pytest.approx([0, 5 * metres, 0], abs=1e-6)
-    assert any("120 were taken" in n for n in clip.notes) and any("01.asf" in n for n in clip.notes)
+    assert any("120 frames a second were assumed" in n for n in clip.notes) and any(
+        "01.asf" in n for n in clip.notes
+    )
 
 
 @pytest.mark.parametrize("said", [":RADIANS", ""])

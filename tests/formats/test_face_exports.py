@@ -90,7 +90,7 @@ def test_curves_of_a_face_are_read_at_their_rate(tmp_path: Path, name: str, text
     ("starts", "want", "told"),
     [
         ([4, 0, 8], list(range(12)), ""),
-        ([0, 8], [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11], "4 frames that no event has were filled in"),
+        ([0, 8], [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11], "4 frames without an event were filled in"),
         ([0, 4, 0], [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3], "its 2 utterances follow each other"),
     ],
     ids=["out of order", "one lost", "two utterances"],
@@ -117,7 +117,7 @@ def test_an_index_far_beyond_the_frames_is_refused(tmp_path: Path) -> None:
 
 
 def test_what_was_left_out_or_taken_is_told(tmp_path: Path) -> None:
-    for data, told in ((audio2face(), "browLowerL"), (azure(), "60 were taken")):
+    for data, told in ((audio2face(), "browLowerL"), (azure(), "60 frames a second were assumed")):
         (tmp_path / "a.json").write_text(json.dumps(data))
         assert any(told in note for note in read_clips(tmp_path / "a.json")[0].notes)
 
@@ -125,16 +125,16 @@ def test_what_was_left_out_or_taken_is_told(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "cause"),
     [
-        (json.dumps(audio2face(facsNames=["browLowerL", "x", "y"])), "not ARKit's"),
-        (json.dumps(audio2face(facsNames=3)), "no list of names"),
-        (json.dumps(audio2face(exportFps="x")), "no number"),
+        (json.dumps(audio2face(facsNames=["browLowerL", "x", "y"])), "not ARKit's names"),
+        (json.dumps(audio2face(facsNames=3)), "not a list of names"),
+        (json.dumps(audio2face(exportFps="x")), "not a number"),
         (json.dumps(audio2face(exportFps=0)), "its frame rate is 0"),
-        (json.dumps(audio2face(weightMat=[[1, 2]])), "not 3 numbers"),
-        (json.dumps(audio2face(weightMat=[[1, 2, "x"]])), "no number"),
+        (json.dumps(audio2face(weightMat=[[1, 2]])), "not have 3 numbers"),
+        (json.dumps(audio2face(weightMat=[[1, 2, "x"]])), "not a number"),
         (json.dumps(audio2face(weightMat=[[1, 2, 99]])), "not from 0 to 1"),
         (json.dumps(audio2face(weightMat=[])), "no frames"),
         ('{"BlendShapes": 3}', "neither 'weightMat'"),
-        (json.dumps({"BlendShapes": [[0.0] * 54]}), "not 55 numbers"),
+        (json.dumps({"BlendShapes": [[0.0] * 54]}), "not have 55 numbers"),
         ('{"BlendShapes": [', "not JSON"),
     ],
 )

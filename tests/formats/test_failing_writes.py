@@ -104,7 +104,7 @@ def test_a_project_can_be_read_whichever_call_of_saving_it_fails(
 
 
 def sitting(path: Path, journal: Path, made: list[Project], done: list[int]) -> None:
-    """Edit, save in between, and edit on, as a window does; `done` counts the edits that were taken."""
+    """Edit, save in between, and edit on, as a window does; `done` counts the edits that were accepted."""
     kept = Journal(journal, path)
     mark = None
     try:

@@ -185,9 +185,7 @@ def test_a_file_whose_name_is_no_text_is_left_out_since_it_could_not_be_saved(fo
 def test_what_is_true_of_many_files_is_said_once(shared_data: Path) -> None:
     result = import_files(Project(), None, [shared_data / "bandai-namco-1"])
     assert len(result.notes) == 1
-    assert result.notes[0].startswith(
-        "63 files (dataset-1_bow_active_001.bvh …): units taken for centimetres"
-    )
+    assert result.notes[0].startswith("63 files (dataset-1_bow_active_001.bvh …): units read as centimetres")
 
 
 def test_a_bvh_and_a_glb_of_one_character_go_together(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ def test_what_is_written_is_read_back_with_limbs_that_point_as_they_did(tmp_path
         assert 0.7 < found["trans"][:, 2].mean() < 1.1, "Z is up, and the hips are as high as a leg is long"
     back = read_clips(path)[0]
     assert back.frames == clip.frames and back.skeleton == make_smpl_figure(52)
-    assert any("Z is up" in note for note in back.notes)
+    assert any("its Z axis points up" in note for note in back.notes)
     worst = 0.0
     for role, end in (("upper_arm", "lower_arm"), ("lower_arm", "hand"), ("upper_leg", "lower_leg")):
         for side in ("left", "right"):

@@ -105,8 +105,8 @@ def test_a_text_becomes_the_value(project, column, typed, shown):
     ("name", "column", "typed", "why"),
     [
         ("rest beat lf", "kind", "gestur", "'gestur' is none of stance, gesture, fidget, transition"),
-        ("rest beat lf", "kind", "transition", "write that, and it becomes one"),
-        ("rest to up", "end_stance", "", "write that, and it becomes one"),
+        ("rest beat lf", "kind", "transition", "write the stance, and the action becomes a transition"),
+        ("rest to up", "end_stance", "", "write the stance, and the action becomes a transition"),
         ("rest to up", "end_stance", "rest", "must end in another stance"),
         ("rest to up", "end_stance", "nowhere", "no stance 'nowhere'"),
         ("rest beat lf", "stance", "nowhere", "no stance 'nowhere'"),

@@ -50,7 +50,7 @@ def test_stances_are_kept_rests_spread_and_the_head_is_mostly_straight(
         assert value(counted[mode], "Changes of stance undone") == 0
         assert value(counted[mode], "Head tilted") < 0.45
         assert value(counted[mode], "Spread of the time between acts") > 0.6
-    assert 5 < value(counted["idle"], "Rests of the arms, half") < 30
+    assert 5 < value(counted["idle"], "Half of the rests of the arms") < 30
 
 
 def test_eyes_do_as_peoples_do(counted: dict[str, BehaviourCount]) -> None:

@@ -162,7 +162,7 @@ class BehaviourDialog(QDialog):
                 if column == 2 and row.source is not None:
                     item.setToolTip(tr_phrase(row.source))
                 elif off:
-                    item.setToolTip(tr("Outside what people do, or what is aimed at"))
+                    item.setToolTip(tr("Outside the range of people, or outside the aim"))
                 if column == 1 and row.usual is not None:
                     item.setForeground(QColor(colors.warning if off else colors.text))
                 if column == 2:
@@ -173,6 +173,4 @@ class BehaviourDialog(QDialog):
             lines += [tr_plural("{count} more stance", "{count} more stances", more)] if more > 0 else []
         self.lacks.setText("\n".join(lines))
         self.lacks.setVisible(bool(lines))
-        self.state.setText(
-            tr("Counted over an hour in which nothing is said; with words, gestures follow them.")
-        )
+        self.state.setText(tr("Counted over an hour without speech. With speech, gestures follow the words."))

@@ -184,7 +184,7 @@ class ImportDialog(QDialog):
     def _foot(self) -> QHBoxLayout:
         row = QHBoxLayout()
         row.setSpacing(10)
-        self.told = QLabel(tr("Reading …"), self)
+        self.told = QLabel(tr("Reading…"), self)
         self.told.setProperty("dim", True)
         self.bar = QProgressBar(self, textVisible=False)
         self.bar.setRange(0, 0)
@@ -240,7 +240,7 @@ class ImportDialog(QDialog):
             )
 
         self.job = self.jobs.start(tr("Reading the conversation"), work, self._came, self._failed)
-        self._show(tr("Reading the sound and its words …"), busy=True)
+        self._show(tr("Reading the sound and its words…"), busy=True)
 
     def _end_job(self) -> None:
         if self.job is not None:

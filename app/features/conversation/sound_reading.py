@@ -39,7 +39,7 @@ class SideSound:
 
     wave: Envelope | None = None
     pitch: Envelope | None = None
-    told: str = field(default_factory=partial(tr, "Reading the sound …"))
+    told: str = field(default_factory=lambda: tr("Reading the sound…"))
     part: float = 0.0
     missing: str = ""
     loudest: float = 0.0
@@ -215,7 +215,7 @@ class _Work:
             loudest = max(loudest, float(abs(piece).max()))
             self.set(heard, loudest=loudest, part=0.5 * begin / len(samples))
             job.tell(*progress, tr("waveform"))
-        self.set(heard, part=0.5, told=tr("Finding the pitch …"))
+        self.set(heard, part=0.5, told=tr("Finding the pitch…"))
 
     def _sing(self, heard: SideSound, samples: Any, rate: int) -> None:
         """Find the pitch."""

@@ -173,7 +173,7 @@ COMMANDS = (
         "look",
         tr_noop("&Open from the desktop in this window"),
         FileFeature.toggle_second_start,
-        tip=tr_noop("What you open in the desktop comes into this window, not into a second one"),
+        tip=tr_noop("Files that you open from the desktop open in this window, not in a second one"),
         checked=FileFeature.takes_second_start,
     ),
     Command("recent", FILE, "project", tr_noop("Open &recent"), fill=FileFeature.fill_recent),

@@ -88,9 +88,9 @@ class VersionsDialog(QDialog):
         heading = QLabel(tr("Earlier versions of {name}", name=name), self)
         heading.setProperty("heading", True)
         words = QLabel(
-            tr("Each save keeps the version before it. A version opens as a copy and replaces nothing.")
+            tr("Each save keeps the previous version. A version opens as a copy and replaces nothing.")
             if found
-            else tr("No earlier versions yet. Each save keeps the version before it."),
+            else tr("No earlier versions yet. Each save keeps the previous version."),
             self,
         )
         words.setProperty("dim", True)

@@ -63,7 +63,7 @@ COMMANDS = (
         "",
         tr_noop("&First character in two minutes"),
         GuideFeature.begin,
-        tip=tr_noop("Lead through importing, labelling, watching and exporting, in this window"),
+        tip=tr_noop("A guide through importing, labelling, watching and exporting, in this window"),
     ),
 )
 

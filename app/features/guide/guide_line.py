@@ -86,7 +86,7 @@ class GuideLine(QToolBar):
         self.number = QLabel(held)
         self.number.setProperty("dim", True)
         self.words = QLabel(held, wordWrap=True)
-        self.take = QPushButton(tr("Take three clips"), held)
+        self.take = QPushButton(tr("Use three sample clips"), held)
         strengthen(self.take)
         self.take.clicked.connect(take_samples)
         self.skip = QPushButton(tr("Skip"), held)

@@ -51,17 +51,16 @@ STEPS = (
 WORDS: Mapping[str, str] = make_lazy_texts(
     lambda: {
         "clips": tr(
-            "Bring clips: drop at least three files or a folder on the window, or take three of the sample's."
+            "Add clips: drop at least three files or a folder on the window, or use three clips of "
+            "the sample."
         ),
         "stance": tr(
-            "Drag the clip that rests onto the middle of the graph. Or select it and press 1. It becomes a "
-            "stance: the pose that everything else starts and ends in."
+            "Drag the resting clip onto the middle of the graph. Or select it and press 1. It "
+            "becomes a stance: the pose that everything else starts and ends in."
         ),
-        "gesture": tr(
-            "Drag a clip that says something, such as a wave, onto Gesture. Or select it and press 2."
-        ),
+        "gesture": tr("Drag a clip with a meaning, such as a wave, onto Gesture. Or select it and press 2."),
         "fidget": tr(
-            "Drag a clip that says nothing, such as a look at a watch, onto Fidget. Or select it and press 3."
+            "Drag a clip without a meaning, such as a look at a watch, onto Fidget. Or select it and press 3."
         ),
         "watch": tr(
             "All connections are made. Watch for a few seconds: the character rests, waves and fidgets by "
@@ -69,8 +68,8 @@ WORDS: Mapping[str, str] = make_lazy_texts(
         ),
         "export": tr("Press Ctrl+E, choose your engine and export. The engine plays what you just saw."),
         "end": tr(
-            "This is your first character. Next: label a whole folder with Clips > Label clips, or make it "
-            "talk in the workspace Talk."
+            "This is your first character. Next: label a whole folder with Graph > Label clips, or "
+            "make it talk in the workspace Talk."
         ),
     }
 )

@@ -195,7 +195,7 @@ def contribute(shell: Shell) -> Contribution:
                 "",
                 tr("&System report"),
                 report_system,
-                tip=tr("Versions, drawing and folders, for a report of a fault"),
+                tip=tr("Versions, graphics and folders, for a problem report"),
             ),
             Command(
                 "news",

@@ -50,7 +50,7 @@ class NewsDialog(QDialog):
         self.said = QLabel(self, wordWrap=True)
         self.allow = QCheckBox(tr("Look for updates once a day"), self)
         self.allow.setToolTip(
-            tr("One request that has nothing of you or your computer. Nothing is installed.")
+            tr("Sends one request that contains nothing about you or your computer. Installs nothing.")
         )
         self.allow.setChecked(is_asking_allowed(settings))
         self.allow.toggled.connect(self._choose)
@@ -87,7 +87,9 @@ class NewsDialog(QDialog):
         self.allow.setVisible(there)
         self.look.setVisible(there)
         self.look.setEnabled(is_asking_allowed(self.settings))
-        self.said.setText("" if there else tr("This copy has no address to look for updates."))
+        self.said.setText(
+            "" if there else tr("This copy of Metagraph does not know where to look for updates.")
+        )
 
     def _choose(self, on: bool) -> None:
         self.settings.setValue(ALLOWED, "true" if on else "false")
@@ -119,10 +121,10 @@ class NewsDialog(QDialog):
 
     def _show(self, release: Release) -> None:
         """Show a newer release; its notes are a stranger's text, so they are shown as they are."""
-        self.heading.setText(tr("Metagraph {version} is there", version=release.version))
+        self.heading.setText(tr("Metagraph {version} is available", version=release.version))
         self.notes.setPlainText(release.notes)
         self._url = release.url
         self.page.setVisible(bool(release.url))
         self.said.setText(
-            tr("You have {version}. Install the new one as you installed this one.", version=__version__)
+            tr("You have {version}. Install the new version the same way as this one.", version=__version__)
         )

@@ -44,7 +44,9 @@ class SystemReportDialog(QDialog):
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.resize(760, 480)
         self.words = QLabel(
-            tr("Send this when you report a fault. It has nothing of your projects."), self, wordWrap=True
+            tr("Send this when you report a problem. It contains nothing from your projects."),
+            self,
+            wordWrap=True,
         )
         self.report = QPlainTextEdit(make_window_report(), self)
         self.report.setReadOnly(True)

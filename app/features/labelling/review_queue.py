@@ -135,7 +135,7 @@ class ReviewQueue(QWidget):
 
     def say_nothing_to_bridge(self) -> None:
         """Say that no stance waits to be joined to the others."""
-        words = tr("Nothing to bridge: each stance that is placed has a way in and out.")
+        words = tr("Nothing to bridge: every placed stance has a way in and out.")
         if words not in self.parted.text():
             self.parted.setText("\n".join(text for text in (self.parted.text(), words) if text))
         self.parted.setVisible(True)

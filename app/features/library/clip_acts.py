@@ -63,7 +63,7 @@ class ClipActs:
         action = out.addAction(tr("Keep in place"), lambda: self.keep_in_place(chosen, not held))
         action.setCheckable(True)
         action.setChecked(held)
-        action.setToolTip(tr("Takes out the way and the turn that the hips have made by the end"))
+        action.setToolTip(tr("Removes the distance and the turn that the hips have made by the end"))
         out.addAction(tr("Rename…\tF2"), lambda: self.rename(entry.id))
         out.addAction(tr("Duplicate\tCtrl+Shift+D"), lambda: self.duplicate(chosen))
         out.addAction(tr("Reveal in folder"), lambda: self.reveal(entry.id))

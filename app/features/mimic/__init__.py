@@ -27,7 +27,7 @@ def contribute(shell: Shell) -> Contribution:
                 "make",
                 tr("Mimic a &person…"),
                 mimic,
-                tip=tr("Make the character copy the stances of a person in a video, or of keypoints"),
+                tip=tr("Make the character copy the stances of a person in a video or in keypoints"),
                 enabled=can,
                 when="meta",
             ),

@@ -51,8 +51,8 @@ def _when_installed(shell: Shell, begin: Callable[[], None]) -> None:
     box.setText(tr("Finding a person in a picture needs MediaPipe, which is not installed."))
     box.setInformativeText(
         tr(
-            "It takes {megabytes} MB on disk and is loaded from PyPI. Licence: {licence}. Pictures stay on "
-            "this computer.",
+            "It takes {megabytes} MB on disk and is downloaded from PyPI. Licence: {licence}. "
+            "Pictures stay on this computer.",
             megabytes=extra.megabytes,
             licence=extra.licence,
         )

@@ -53,8 +53,8 @@ WAIT = tr_noop(
     "Working… The first time after installing, the search is compiled for this machine: up to a minute."
 )
 LOADING = tr_noop(
-    "Working… New motion needs a compiler, which is being loaded (60 MB, once); then the search is compiled "
-    "for this machine. That takes a minute or two."
+    "Working… New motion needs a compiler, which is being downloaded (60 MB, once); then the "
+    "search is compiled for this machine. That takes a minute or two."
 )
 
 
@@ -73,7 +73,7 @@ def describe_fits(limit: Any) -> str:
         for f in found
     )
     return (
-        tr("What other distributions of these costs say, the nearest first:\n{rows}", rows=rows)
+        tr("The limits that other distributions of these costs give, nearest first:\n{rows}", rows=rows)
         if found
         else ""
     )
@@ -524,7 +524,7 @@ class MotionGraphDialog(QDialog):
         self._keep(loaded, tr("Cut takes into clips"))
         self.said.setText(
             tr(
-                "{clips} in the library, not labelled yet: Graph > Label clips… proposes what each is.",
+                "{clips} in the library, not labelled yet: Graph > Label clips… proposes a label for each.",
                 clips=tr_plural("{count:,} clip", "{count:,} clips", len(loaded)),
             )
         )

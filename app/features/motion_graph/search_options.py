@@ -76,7 +76,7 @@ class Wishes(QFrame):
         self.search.setItemData(
             1,
             tr(
-                "Stochastic greedy search, as in the paper. Another seed gives another result. It can "
+                "Stochastic greedy search, as in the paper. Another seed gives another result. It may "
                 "find nothing."
             ),
             3,

@@ -34,8 +34,8 @@ class SoftWishes(QWidget):
         self.loudness = self._weight(
             tr("Loudness"),
             tr(
-                "Prefers frames with a similar loudness, measured by the speaker's own spread. Start "
-                "with 0.25. Needs the sounds of the conversations"
+                "Prefers frames with a similar loudness, measured by the speaker's own standard "
+                "deviation. Start with 0.25. Needs the sounds of the conversations"
             ),
         )
         self.rate = self._weight(
@@ -86,8 +86,8 @@ class SoftWishes(QWidget):
         out.setAccessibleName(name)
         out.setToolTip(
             tr(
-                "{tip}. The number is the cost of one second that is off by one spread, as a share of "
-                "what a transition can cost.",
+                "{tip}. The number is the cost of one second that differs by one standard deviation, as "
+                "a share of what a transition can cost.",
                 tip=tip,
             )
         )

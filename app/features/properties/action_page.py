@@ -113,9 +113,11 @@ class ActionPage(Halves):
         self.leave_row = self._add_pair(page, tr("Exit"), self.leave, self.earliest)
         self.repeats = QCheckBox(tr("for about"), page)
         self.repeats.setAccessibleName(tr("Repeats"))
-        self.repeats.setToolTip(tr("Its part plays again and again, for a clip that shows a movement once"))
+        self.repeats.setToolTip(
+            tr("Its part of the clip plays again and again. Use it for a clip that shows a movement once.")
+        )
         self.repeats.clicked.connect(self._repeat)
-        self.repeat = Seconds(page, tr("How long it repeats if a request does not say"))
+        self.repeat = Seconds(page, tr("How long it repeats if a request does not say how long"))
         self.repeat.valueChanged.connect(self._repeat_for)
         self.repeat_row = self._add_pair(page, tr("Repeats"), self.repeats, self.repeat)
 

@@ -181,8 +181,8 @@ class PlannerRows(QWidget):
                 tr("Variety"),
                 tr("Change variety"),
                 tr(
-                    "How seldom the character repeats actions and changes stances by itself: 1 is natural, "
-                    "0 lets it repeat at once, as in the published method"
+                    "How rarely the character repeats actions and changes stances by itself: 1 is natural, 0 "
+                    "lets it repeat at once, as in the published method"
                 ),
                 4,
                 "",

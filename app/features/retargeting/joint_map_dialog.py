@@ -108,7 +108,7 @@ class JointMapDialog(QDialog):
         )
         self.everything.setVisible(waiting > 0)
         self.everything.setToolTip(
-            tr("Retarget the clips of the other skeletons, too, by the joint maps offered for them")
+            tr("Retarget the clips of the other skeletons, too, with the joint maps offered for them")
         )
         self.everything.clicked.connect(self._choose_all)
         strengthen(self.go)

@@ -5,7 +5,6 @@ if nothing plays them yet. Said in words before it happens.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import partial
 
 from PySide6.QtCore import QEvent, QObject, QPointF, Qt
 from PySide6.QtGui import (
@@ -47,7 +46,7 @@ class LaneDrop:
     seconds: float
     stance: str | None = None
     possible: bool = False
-    words: str = field(default_factory=partial(tr, "drop on the lane of a layer"))
+    words: str = field(default_factory=lambda: tr("drop on the lane of a layer"))
 
 
 def plan_lane_drop(

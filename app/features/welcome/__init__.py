@@ -40,7 +40,7 @@ def contribute(shell: Shell) -> Contribution:
             WelcomeChoice(
                 "practice",
                 tr("Practice"),
-                tr("152 clips without labels: label each one and watch the graph grow"),
+                tr("152 clips without labels: label them and watch the graph grow"),
                 lambda: files.open(PRACTICE, template=True),
             ),
             WelcomeChoice(

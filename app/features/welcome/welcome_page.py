@@ -156,7 +156,7 @@ class WelcomePage(QWidget):
             QToolButton,
             self,
             text=tr("First character in two minutes"),
-            toolTip=tr("Be led through importing, labelling, watching and exporting"),
+            toolTip=tr("A guide through importing, labelling, watching and exporting"),
         )
         self.guide.clicked.connect(guide)
         grid = QGridLayout()

@@ -45,10 +45,10 @@ def _weighted(project: Project) -> int:
 
 CONVERSATIONS = Loss(
     plural_phrase(
-        "{count} conversation is left out: no export holds conversations. Render it as a video, or play its "
-        "two characters yourself",
-        "{count} conversations are left out: no export holds conversations. Render them as videos, or play "
-        "their characters yourself",
+        "{count} conversation is left out: no export contains conversations. Render it as a "
+        "video, or play its two characters yourself",
+        "{count} conversations are left out: no export contains conversations. Render them as "
+        "videos, or play their characters yourself",
         0,
     ),
     lambda project: len(project.conversations),

@@ -31,7 +31,7 @@ STEPS: Mapping[str, NextSteps] = {
     "metagraph": NextSteps(
         (
             phrase("Load '{stem}.json' with the runtime of your language; '{stem}.glb' lies beside it."),
-            phrase("Ask for gestures, speech and gaze, and apply the pose in each frame."),
+            phrase("Request gestures, speech and gaze, and apply the pose in each frame."),
         ),
         "engines/python",
         "python",
@@ -54,7 +54,7 @@ STEPS: Mapping[str, NextSteps] = {
     "javascript": NextSteps(
         (
             phrase("Copy this folder to where your program or page can read it."),
-            phrase("Import the runtime from 'metagraph/'. Its README has three.js and all calls."),
+            phrase("Import the runtime from 'metagraph/'. Its README describes three.js and all calls."),
         ),
         "engines/javascript",
         "js",
@@ -85,7 +85,7 @@ STEPS: Mapping[str, NextSteps] = {
     "unity-controller": NextSteps(
         (
             phrase("Drop this folder, its .meta files included, into the Assets of your Unity project."),
-            phrase("'{stem}.unity.md' says how to set up the Animator, and has the numbers to ask with."),
+            phrase("'{stem}.unity.md' says how to set up the Animator, and lists the numbers for requests."),
         ),
         "engines/unity",
         guide="{stem}.unity.md",
@@ -105,7 +105,7 @@ STEPS: Mapping[str, NextSteps] = {
     "cpp": NextSteps(
         (
             phrase("Put this folder on the include path of your program. The headers need only C++17."),
-            phrase("Load the two files, ask, and apply the pose in each frame."),
+            phrase("Load the two files, make requests, and apply the pose in each frame."),
         ),
         "engines/cpp",
         "cpp",
@@ -128,7 +128,7 @@ STEPS: Mapping[str, NextSteps] = {
         (
             phrase("Upload '{stem}.glb', and add an anim component to its entity."),
             phrase("Load '{stem}.animstategraph.json', and assign each animation to the state of its name."),
-            phrase("Ask with the numbers of '{stem}.numbers.json'."),
+            phrase("Make requests with the numbers of '{stem}.numbers.json'."),
         ),
         "engines/playcanvas",
     ),
@@ -136,7 +136,7 @@ STEPS: Mapping[str, NextSteps] = {
         (
             phrase("Copy this folder into your Godot project, and put '{stem}.glb' into a scene."),
             phrase(
-                "Give its AnimationTree the resource '{stem}.tres'. '{stem}.godot.md' names what it takes."
+                "Give its AnimationTree the resource '{stem}.tres'. '{stem}.godot.md' describes its states."
             ),
         ),
         "engines/godot",
@@ -176,7 +176,8 @@ STEPS: Mapping[str, NextSteps] = {
         (
             phrase("Load an avatar in a program that plays VRM animations."),
             phrase(
-                "Play a file on it. '{stem}.animations.json' says what each is and in which stance it begins."
+                "Play a file on it. '{stem}.animations.json' says what each file is and in which stance "
+                "it begins."
             ),
         ),
         "engines/vrm",

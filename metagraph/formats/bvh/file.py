@@ -354,7 +354,7 @@ def _fps(text: str, step: float, notes: list[str]) -> float:
     if abs(whole * step - 1) > 1e-9 and abs(1 / usual - step) <= most and abs(usual * step - 1) < 0.15:
         if abs(usual * step - 1) > 0.025:
             notes.append(
-                phrase("its frame time of {step} s was taken for {fps} frames a second", step=text, fps=usual)
+                phrase("its frame time of {step} s was read as {fps} frames a second", step=text, fps=usual)
             )
         return float(usual)
     if abs(1 / whole - step) <= most and abs(whole * step - 1) < 0.02:

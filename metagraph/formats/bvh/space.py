@@ -108,12 +108,12 @@ def find_unit(skeleton: Skeleton, roles: dict[str, int]) -> tuple[float, str]:
         if _HUMAN[0] <= tall * scale <= _HUMAN[1]:
             return (
                 scale,
-                f"units taken for {name}: the {'figure' if known else 'skeleton'} is then {tall * scale:.2f} "
+                f"units read as {name}: the {'figure' if known else 'skeleton'} is then {tall * scale:.2f} "
                 "m tall",
             )
     return (
         USUAL,
-        f"units taken for centimetres, though the skeleton is then {tall * 0.01:.3g} m tall; give the scale "
+        f"units read as centimetres, though the skeleton is then {tall * 0.01:.3g} m tall; give the scale "
         "to change it",
     )
 

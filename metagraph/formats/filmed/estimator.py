@@ -72,7 +72,7 @@ class PoseEstimator:
             self._child.end(PATIENCE)
             raise EstimatorError(
                 phrase(
-                    "MediaPipe has ended by itself (code {code}). It needs a processor with AVX. Give "
+                    "MediaPipe stopped by itself (code {code}). It needs a processor with AVX. Give "
                     "keypoints of any other pose estimator.",
                     code=self._child.process.returncode,
                 )

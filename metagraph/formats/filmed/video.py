@@ -131,4 +131,4 @@ def is_video(path: str | Path) -> bool:
 
 def _describe_unread(path: Path, error: Exception) -> FileError:
     words = (error.strerror or str(error)) if isinstance(error, OSError) else str(error)
-    return FileError(path, phrase("it is no video that can be read ({words})", words=words), "", REMEDY)
+    return FileError(path, phrase("it is not a video that can be read ({words})", words=words), "", REMEDY)

@@ -94,7 +94,7 @@ def _planned(
         notes.append(phrase("its mesh is packed with Draco and was left out; its motion was read"))
     own_nodes = table.nodes[table.begins[number] : table.begins[number + 1]]
     if gltf.vrm_face.gaze is not None and gltf.vrm_face.gaze in own_nodes:
-        notes.append(phrase("where its eyes look (lookAt) was left out: the project's own gaze moves them"))
+        notes.append(phrase("the gaze of its eyes (lookAt) was left out: the project's own gaze moves them"))
     if first == after and not morphs:
         return None
     inputs = {*channels.sources[first:after].tolist(), *(channel[0] for channel in morphs)}

@@ -100,7 +100,9 @@ def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | No
     notes: list[str] = []
     if not head.h36m and _looks_h36m(frames):
         head.h36m = True
-        notes.append("its points were taken for Human3.6M's: the first lies between the second and the fifth")
+        notes.append(
+            "its points were read as those of Human3.6M's: the first lies between the second and the fifth"
+        )
     elif head.h36m:
         notes.append("its points are Human3.6M's, as it says")
     if head.h36m:

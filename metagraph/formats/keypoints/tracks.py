@@ -68,7 +68,7 @@ def _times(frames: Sequence[KeypointFrame], fps: float | None, notes: list[str])
         unit = 1.0 if step < 5 else 1e-3 if step < 5000 else 1e-6 if step < 5e6 else 1e-9
         return np.asarray((times - times[0]) * unit)
     if fps is None and len(frames) > 1:
-        notes.append(f"how many frames a second there are is not said; {FPS:g} were taken")
+        notes.append(f"it does not give its frame rate; {FPS:g} frames a second were assumed")
     numbers = [f.number for f in frames]
     known = all(n is not None for n in numbers)
     count = np.array(numbers if known else range(len(frames)), float)

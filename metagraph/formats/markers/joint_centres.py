@@ -78,7 +78,7 @@ def find_joint_centres(path: Path, take: MarkerTake) -> KeypointTrack:
         raise FileError(
             path,
             phrase(
-                "its markers do not show both of each {parts}; they are called {names}",
+                "its markers do not show both of each {parts}; they are named {names}",
                 parts=", ".join(lacking),
                 names=", ".join(take.names[:12]) + (" ..." if len(take.names) > 12 else ""),
             ),
@@ -88,7 +88,7 @@ def find_joint_centres(path: Path, take: MarkerTake) -> KeypointTrack:
     notes = [*take.notes, *told]
     if skin:
         notes.append(
-            phrase("of the {parts} only one marker is known, which is on the skin", parts=", ".join(skin))
+            phrase("only one marker of the {parts} is known, and it is on the skin", parts=", ".join(skin))
         )
     points = _in_metres(points, notes)
     turned = _upright(np.where(seen[..., None], points, 0.0), seen)
@@ -199,7 +199,7 @@ def _in_metres(points: Array, notes: list[str]) -> Array:
         return points
     notes.append(
         phrase(
-            "in the unit it says the trunk is {trunk:.3g} m long: read {factor:g} times {way}",
+            "in its stated unit, the trunk is {trunk:.3g} m long: read {factor:g} times {way}",
             trunk=trunk,
             factor=max(scale, 1 / scale),
             way=phrase("larger") if scale > 1 else phrase("smaller"),

@@ -20,7 +20,7 @@ _WORDS = {
     "centimetres": "cm", "inch": "in", "inches": "in", "feet": "ft",
 }  # fmt: skip
 MOST_MARKERS = 1000
-AGAIN = phrase("Export it again from the program it is from.")
+AGAIN = phrase("Export it again from the program that made it.")
 
 
 @dataclass(frozen=True, eq=False)

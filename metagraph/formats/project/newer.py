@@ -19,8 +19,8 @@ MOST = 100  # kinds of fields that are left out
 _VERSION = re.compile(rb"^\s*\{?\s*\"?metagraph\"?\s*:\s*(\d{1,9})\b", re.MULTILINE)
 _PART = re.compile(r"([^.\[\]]+)(?=[.\[]|$)|\[\d+\]")
 ONLY_LOOKED_AT = phrase(
-    "A newer Metagraph wrote this project, so it can only be looked at, without what this one does not know. "
-    "Update Metagraph to change it."
+    "A newer Metagraph wrote this project. You can only view it, without the parts that this "
+    "version does not know. Update Metagraph to change it."
 )
 
 

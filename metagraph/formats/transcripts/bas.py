@@ -45,10 +45,10 @@ def read_partitur(source: TranscriptSource) -> Transcript:
                 spans[word] = min(first, start), max(last, start + length + 1)
         except (ValueError, IndexError):
             raise out.fail(
-                phrase("'{value}' has not what belongs there", value=line.strip()[:60]), f"line {n}"
+                phrase("'{value}' does not have what belongs there", value=line.strip()[:60]), f"line {n}"
             ) from None
     if not 1 <= rate <= 1e6:
-        raise out.fail(phrase("it does not say how many samples a second there are (SAM)"))
+        raise out.fail(phrase("it does not give its sample rate (SAM)"))
     if words and not spans:
         raise out.fail(phrase("it has words (ORT), but no times of phones (MAU)"))
     for number, text in sorted(words.items()):

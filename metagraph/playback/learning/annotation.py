@@ -96,15 +96,16 @@ class Annotation:
         if len(set(self.origins)) > 1 and not own and names:
             told.append(
                 phrase(
-                    "its media begin at different times, and none is called as the sound: read as times in "
-                    "'{name}'",
+                    "its media begin at different times, and none has the name of the sound: read as times "
+                    "in '{name}'",
                     name=name,
                 )
             )
         if late:
             told.append(
                 phrase(
-                    "its times begin at {late:.3f} s of '{name}' (its time origin): read that much later",
+                    "its times count from {late:.3f} s of '{name}' (its time origin), so they were read that "
+                    "much later",
                     late=late,
                     name=name,
                 )

@@ -1,13 +1,12 @@
-"""Small events of the face: drawn with the other life layers, shown by `shown_face`, `answer` and
-`settle`.
+"""Small events of the face: drawn with the other life layers, shown by `shown_face`, `answer` and `settle`.
 
 What is known and followed here: speakers raise their brows on stressed words (Cave et al. 1996), from about
 60 ms before the accent (Flecha-Garcia 2010), and where they ask (Ekman 1979); greeting, people flash their
 brows for about a third of a second (Eibl-Eibesfeldt 1972); felt smiles come and go in 2/3 to 4 s and raise
-the cheeks (Ekman and Friesen 1982), posed ones may stay. So a mood's face comes up and goes back to part of
-it instead of standing there. How much, how often and for which tags is ours.
+the cheeks (Ekman and Friesen 1982), posed ones may stay. So the face of a mood rises and falls back to a part
+of it, instead of being constant. How much, how often and for which tags is ours.
 
-Where `Life.expressions` is 0, or at full stillness, what a mood shows stands as it is and nothing else comes.
+If `Life.expressions` is 0, or at full stillness, the face of a mood is constant and nothing else is added.
 """
 
 from __future__ import annotations
@@ -63,8 +62,9 @@ DUCHENNE = 0.2  # the smile from which on cheeks rise
 
 @dataclass
 class FaceShown:
-    """What a face shows beside lids and lips: weights of its channels. brow_up raises the brows' inner ends
-    alone, brows the whole of them. One is filled again for each time (`shown_face`, `answer`, `settle`).
+    """The weights of a face's channels, without lids and lips. brow_up raises only the inner ends of the
+    brows, brows the whole of them. The same object is filled again for each time (`shown_face`, `answer`,
+    `settle`).
     """
 
     smile: float = 0.0
@@ -105,8 +105,8 @@ def emphases_on(
     drawn: float,
     before: Lane,
 ) -> Lane:
-    """Return the lane of emphases filled from `cut` to `drawn` seconds: on as many stressed syllables as
-    `accent_brows` says, at the end of questions, and where a reaction begins.
+    """Return the lane of emphases filled from `cut` to `drawn` seconds: on the share of stressed syllables
+    that `accent_brows` says, at the end of questions, and where a reaction begins.
     """
     found: list[list[float]] = []
     for speech in track.speeches:
@@ -141,7 +141,7 @@ def emphases_on(
 
 
 def asks(speech: Speech) -> bool:
-    """Whether something said is a question, by its last sign."""
+    """Return whether a speech is a question, by its last sign."""
     text = speech.text.strip()
     return text != "" and any(text.rpartition(mark)[2] == "" for mark in MARKS)
 
@@ -149,7 +149,7 @@ def asks(speech: Speech) -> bool:
 def shown_face(
     face: FaceShown, life: Life, swells: Lane, emphases: Lane, bears: Bearing, seconds: float
 ) -> None:
-    """Fill in the face of a mood at a time, and of what was drawn."""
+    """Fill in the face at a time, from the mood and the drawn events."""
     calm = 1 - life.stillness
     swell, warm = 0.0, 0.0
     n = bisect_right(swells.times, seconds) - 1
@@ -199,7 +199,7 @@ def answer(
 
 
 def settle(face: FaceShown) -> None:
-    """Keep all within 0..1, and raise the cheeks with a smile."""
+    """Clamp all weights to 0..1, and raise the cheeks with a smile."""
     face.smile = within(face.smile, 0.0, 1.0)
     face.frown = within(face.frown, 0.0, 1.0)
     face.brow_down = within(face.brow_down, 0.0, 1.0)

@@ -1,7 +1,7 @@
-"""From letters to mouth shapes: what a mouth may do when neither sound nor phones of a line are there.
+"""From letters to mouth shapes: what a mouth does if a line has neither sound nor phones.
 
-English spelling is read by a few rules; other alphabets by their vowels, what is unknown by turns of open and
-shut.
+A few rules read English spelling. Other alphabets are read by their vowels. Unknown letters open and shut the
+mouth in turn.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ def _unknown(alphabet: Alphabet, letter: str, before: list[str]) -> list[str]:
 
 
 def split_words(alphabet: Alphabet, text: str) -> list[tuple[str, float]]:
-    """Return each word and how many characters' time of pause follows it."""
+    """Return each word, and the pause after it, measured in characters."""
     out: list[tuple[str, float]] = []
     word, pause = "", 0.0
     for c in alphabet.letters(text):
@@ -114,8 +114,8 @@ def split_words(alphabet: Alphabet, text: str) -> list[tuple[str, float]]:
 
 @dataclass(frozen=True, slots=True)
 class SpelledSound:
-    """A sound of a text. shape: "" for a pause. size: characters' time. strength: of a syllable, 0 for what
-    is none.
+    """A sound of a text. shape: "" for a pause. size: characters' time. strength: of a syllable, 0 for
+    anything else.
     """
 
     shape: str
@@ -126,8 +126,7 @@ class SpelledSound:
 def sounds(alphabet: Alphabet, word: str) -> list[SpelledSound]:
     """Return a word's sounds, in turn.
 
-    Content words are longer than the words between them; the first vowel bears the stress more often than
-    not.
+    Content words are longer than the words between them. The first vowel usually has the stress.
     """
     out: list[SpelledSound] = []
     found = shapes(alphabet, word)
@@ -146,7 +145,9 @@ def sounds(alphabet: Alphabet, word: str) -> list[SpelledSound]:
 
 @dataclass
 class Spelled:
-    """Something said, as its letters tell: pieces in time, times and strengths (0..1) of its syllables."""
+    """Something said, timed by its letters: pieces in time, and times and strengths (0..1) of its
+    syllables.
+    """
 
     pieces: list[MouthPiece] = field(default_factory=list)
     peaks: list[float] = field(default_factory=list)
@@ -174,8 +175,8 @@ def read_aloud(alphabet: Alphabet, text: str) -> float:
 
 
 def measure_letter(code: int) -> float:
-    """Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean
-    is a syllable.
+    """Return how long a letter takes, measured in characters, by its code point: a Chinese, Japanese or
+    Korean one is a syllable.
     """
     for script in _SYLLABARIES:
         if script.first <= code and code <= script.last:
@@ -184,7 +185,7 @@ def measure_letter(code: int) -> float:
 
 
 def spelled(alphabet: Alphabet, text: str, duration: float) -> Spelled:
-    """Return what a text says in `duration` seconds; nothing where no letter of it is known."""
+    """Return the sounds of a text that lasts `duration` seconds; none if it has no known letter."""
     out = Spelled()
     plan: list[SpelledSound] = []
     for word, pause in split_words(alphabet, alphabet.stripped(text)):

@@ -1,5 +1,5 @@
-"""What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in.
-Values; times are seconds.
+"""Requests that last: where to look, what to say, which mode to be in, which stance to stay in. Values; times
+are seconds.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from metagraph.playback.planning.mood import MoodFrom
 @dataclass(frozen=True, slots=True)
 class LookAt:
     """Look at a point or a named point from `start` until `end`, or until the next look. strict: without
-    averting.
+    looking away.
     """
 
     id: str
@@ -44,11 +44,11 @@ class LookAt:
 
 @dataclass(frozen=True, slots=True)
 class Speech:
-    """Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts
-    the lower. length: seconds all of it would have taken, where something cut it short. timing: when its
-    words and mouth shapes come, where that was told. skip: seconds of it that were said before a pause. more:
-    whether more of it may come, so that it is not over when it falls silent. over: when it was said that none
-    does, where it had fallen silent.
+    """Something said. line: id of the project's line, None for `text` alone. priority: a higher one
+    interrupts a lower one. length: seconds that all of it would have taken, if it was cut short. timing: the
+    times of its words and mouth shapes, if known. skip: seconds of it that were said before a pause. more:
+    whether more of it may come, so that it is not over when it falls silent. over: when it was finished, if
+    it had fallen silent before.
     """
 
     id: str
@@ -85,7 +85,7 @@ class PlaceFrom:
 
 @dataclass(frozen=True, slots=True)
 class BlinkAt:
-    """A blink asked for."""
+    """A requested blink."""
 
     id: str
     start: float
@@ -93,8 +93,8 @@ class BlinkAt:
 
 @dataclass(frozen=True, slots=True)
 class StayFrom:
-    """From `start` on the models change no stance of a layer (or, with `on` false, may again), until `end` or
-    the next of these.
+    """From `start` on, the models change no stance of a layer, or may do so again with `on` false, until
+    `end` or the next item of this kind.
     """
 
     id: str
@@ -108,23 +108,27 @@ Item = LookAt | Speech | ModeFrom | PlaceFrom | BlinkAt | StayFrom | MoodFrom
 
 
 def find_line_start(speech: Speech) -> float:
-    """Return the second that what is said counts from: before its start if it goes on after a pause."""
+    """Return the second from which the times of a speech count: before its start if it continues after a
+    pause.
+    """
     return speech.start - speech.skip
 
 
 def measure_line(speech: Speech) -> float:
-    """Return how long all of it takes, seconds, with what was said before a pause and what was cut off."""
+    """Return how many seconds all of a speech takes, with the part before a pause and the part that was cut
+    off.
+    """
     return speech.end - find_line_start(speech) if speech.length is None else speech.length
 
 
 def cut(speech: Speech, at: float) -> Speech:
-    """Return the speech, ending no later than `at`; how long it would have been is remembered."""
+    """Return the speech, ending no later than `at`; it remembers its full length."""
     return speech if speech.end <= at else replace(speech, end=at, length=measure_line(speech))
 
 
 def apart(speeches: Sequence[Speech]) -> list[Speech]:
-    """Return speeches, which come in order, without overlaps: one that is at least as important cuts the
-    running one, with what is said behind it under its id; a lesser one is not said.
+    """Return speeches, given in order, without overlaps: one of equal or higher importance cuts the running
+    one, with its later pieces; a less important one is dropped.
     """
     out: list[Speech] = []
     ends: dict[str, float] = {}  # when what was cut would have ended
@@ -146,7 +150,7 @@ def apart(speeches: Sequence[Speech]) -> list[Speech]:
 
 
 def behind(said: Sequence[Speech], new: Speech, now: float) -> Speech:
-    """Return a text that comes while another one of its id is said: it is said after that. said: in order."""
+    """Return a text moved to after another one of its id that is being said. said: in order."""
     if new.timing is not None or new.line is not None or new.start > now:
         return new
     end = new.start
@@ -158,9 +162,9 @@ def behind(said: Sequence[Speech], new: Speech, now: float) -> Speech:
 
 
 def going_on(old: Speech | None, new: Speech, now: float) -> Speech:
-    """Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it
-    keeps its start and what has been said of it. Only lines whose words or shapes were told with their times
-    do.
+    """Return a line as the continuation of the last one with the same id, if that has begun by `now` or
+    begins with it: it keeps the start and what has been said. Only lines whose words or shapes have times
+    continue.
     """
     if old is None or old.timing is None or new.timing is None or old.length is not None:
         return new
@@ -186,14 +190,14 @@ def going_on(old: Speech | None, new: Speech, now: float) -> Speech:
 
 
 def pace_speech(alphabet: Alphabet, new: Speech) -> Speech:
-    """Return a text with the times its letters tell, so that what comes of it later can be added."""
+    """Return a text with times estimated from its letters, so that later pieces can be added."""
     timing = pace_text(alphabet, new.text, None)
     length = timed_seconds(timing, measure_text(alphabet, new.text))
     return replace(new, end=new.start + length, timing=timing)
 
 
 def _behind_words(old: Speech, told: LineTiming, new: Speech, more: LineTiming, now: float) -> Speech:
-    """Return a line with a text behind what was told of it. told, more: their words."""
+    """Return a line with a text after its known words. told, more: the words of both."""
     begin = find_line_start(old)
     at = max(now - begin, old.skip, old.end - begin)
     timing = replace(told, words=(*told.words, *shifted(more, at).words), paced=True)
@@ -204,7 +208,7 @@ def _behind_words(old: Speech, told: LineTiming, new: Speech, more: LineTiming, 
 
 
 def alike_looks(one: Sequence[LookAt], other: Sequence[LookAt]) -> bool:
-    """Whether two tracks' looks are the same; so for the others below."""
+    """Return whether the looks of two tracks are the same. The functions below compare other items."""
     return len(one) == len(other) and all(a is b or _same_look(a, b) for a, b in zip(one, other, strict=True))
 
 

@@ -1,5 +1,5 @@
-"""A lane of events in time, drawn one after another: never changed, extended at the end, forgotten at the
-front.
+"""A lane of events in time, drawn one after another. It never changes: it is extended at the end and
+forgotten at the front.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class Lane:
-    """times: when events begin, ascending, seconds. rows: what each event is. first: number of the first
-    event that is still kept. width: how many numbers a row has.
+    """times: when events begin, ascending, seconds. rows: the values of each event. first: number of the
+    first event that is still kept. width: how many numbers a row has.
     """
 
     times: Sequence[float] = ()
@@ -58,7 +58,7 @@ class Lane:
         return self.first + len(self.times)
 
     def until(self, seconds: float) -> Lane:
-        """Return the lane with only what begins before a time."""
+        """Return the lane with only the events that begin before a time."""
         count = bisect_left(self.times, seconds)
         if count == len(self.times):
             return self
@@ -71,9 +71,7 @@ class Lane:
         return Lane([*self.times, *times], [*self.rows, *rows], self.first, self.width)
 
     def since(self, seconds: float, before: int = 1) -> Lane:
-        """Return the lane without what neither goes on at `seconds` nor comes later; `before`: how many more
-        are kept.
-        """
+        """Return the lane without events that are over at `seconds`; `before`: how many of those to keep."""
         gone = max(0, bisect_right(self.times, seconds) - 1 - before)
         if gone == 0:
             return self

@@ -1,5 +1,5 @@
-"""When a line's words and mouth shapes come, as a synthesiser tells them: the mouth follows them and is shut
-between. Times are seconds from the line's start.
+"""The times of a line's words and mouth shapes, as a synthesiser reports them: the mouth follows them and is
+shut in between. Times are seconds from the line's start.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from metagraph.playback.life.alphabet import Alphabet
 from metagraph.playback.life.graphemes import PACE, Spelled, measure_letter, sounds, split_words
 from metagraph.playback.life.mouth import LATE, STEP, VOWELS, MouthPiece
 
-WORD = 0.15  # seconds a word takes of which only the start is told, if nothing comes before
-LETTER = 0.07  # and for each of its letters
-SHAPE = 0.2  # seconds the last shape of a line stays
+WORD = 0.15  # seconds that a word takes if only its start is known and nothing comes sooner
+LETTER = 0.07  # and seconds for each of its letters
+SHAPE = 0.2  # seconds for which the last shape of a line stays
 FARTHEST = 3600.0  # seconds of a line
-AGAIN = 0.1  # seconds before the last shape of a line, from which on a shape that is told later belongs to it
-SLACK = 0.05  # seconds by which times may be past the end they are told with
+AGAIN = 0.1  # a later piece belongs to a line from this many seconds before its last shape on
+SLACK = 0.05  # seconds by which times may exceed the given end
 
 # What each viseme of a set shows of the mouth shapes, and how fully.
 OCULUS: dict[str, str] = {
@@ -49,7 +49,7 @@ WEAK: dict[str, float] = {"@": 0.6, "12": 0.5, "1": 0.8, "mouthSmileLeft": 0.3, 
 
 @dataclass(frozen=True, slots=True)
 class SpokenWord:
-    """A word from `start` to `end`; None where only its start is told."""
+    """A word from `start` to `end`; `end` is None if only its start is known."""
 
     text: str
     start: float
@@ -58,8 +58,8 @@ class SpokenWord:
 
 @dataclass(frozen=True, slots=True)
 class VisemeMark:
-    """A mouth shape from `at` until the next mark of a later time. viseme: its name in the set it is of, of
-    `VISEMES` in a `LineTiming`. weight: how fully it is made, 0..1.
+    """A mouth shape from `at` until the next mark of a later time. viseme: its name in its set; in a
+    `LineTiming`, one of `VISEMES`. weight: how fully it is made, 0..1.
     """
 
     at: float
@@ -69,9 +69,8 @@ class VisemeMark:
 
 @dataclass(frozen=True, slots=True)
 class LineTiming:
-    """A line's words and mouth shapes, each by time. later: seconds by which what is told later is said
-    later, because something came after its time. paced: whether nobody told the times, and they follow from
-    the letters.
+    """A line's words and mouth shapes, each by time. later: seconds by which later pieces are delayed,
+    because one came after its time. paced: whether the times are estimated from the letters.
     """
 
     words: tuple[SpokenWord, ...] = ()
@@ -81,7 +80,7 @@ class LineTiming:
 
 
 def alike_timings(one: LineTiming | None, other: LineTiming | None) -> bool:
-    """Whether two lines' words and shapes come alike."""
+    """Return whether two lines have the same words and shapes at the same times."""
     if one is None or other is None:
         return one is None and other is None
     if len(one.words) != len(other.words) or len(one.marks) != len(other.marks):
@@ -105,7 +104,7 @@ def _table(name: str) -> dict[str, str]:
 
 
 def set_of(marks: Sequence[VisemeMark]) -> str:
-    """Return the first set that has all of some visemes, "" where none has."""
+    """Return the first set that has all of the visemes, "" if none has."""
     for name in SETS:
         if all(mark.viseme in _table(name) for mark in marks):
             return name
@@ -115,10 +114,9 @@ def set_of(marks: Sequence[VisemeMark]) -> str:
 def wrong_in(
     words: Sequence[SpokenWord], marks: Sequence[VisemeMark], name: str, duration: float | None
 ) -> str:
-    """Return what is wrong with a line's times, where, and what would be right; "" where nothing is.
+    """Return what is wrong with a line's times, where, and what would be right; "" if nothing is wrong.
 
-    name: of the set the visemes are of, "" for what their names tell. duration: seconds of its sound, None
-    where that is not told.
+    name: of the visemes' set, "" to find it by their names. duration: seconds of its sound, None if unknown.
     """
     last = 0.0
     for n, word in enumerate(words):
@@ -167,7 +165,7 @@ def _out_of_range(seconds: float) -> str:
 def timing_of(
     alphabet: Alphabet, words: Sequence[SpokenWord], marks: Sequence[VisemeMark], name: str
 ) -> LineTiming:
-    """Return the timing that words and visemes in which nothing is wrong make. name: as for `wrong_in`."""
+    """Return the timing of words and visemes that are valid. name: as for `wrong_in`."""
     table = _table(set_of(marks) if name == "" else name)
     shown = [VisemeMark(m.at, table[m.viseme], m.weight * WEAK.get(m.viseme, 1.0)) for m in marks]
     said: list[SpokenWord] = []
@@ -182,7 +180,7 @@ def timing_of(
 
 
 def measure_text(alphabet: Alphabet, text: str) -> float:
-    """Return how long a text takes where more of it may come before or after, seconds."""
+    """Return how many seconds a text takes as a part of a longer text."""
     out = 0.0
     for word, pause in split_words(alphabet, text):
         out += _measure_word(alphabet, word) + pause / PACE
@@ -190,8 +188,8 @@ def measure_text(alphabet: Alphabet, text: str) -> float:
 
 
 def pace_text(alphabet: Alphabet, text: str, seconds: float | None) -> LineTiming:
-    """Return the words of a text, one after the other. seconds: how long all of it takes, None for as long as
-    its letters tell.
+    """Return the words of a text, one after the other. seconds: how long all of it takes, None to estimate it
+    from the letters.
     """
     scale = 1.0 if seconds is None else seconds / max(measure_text(alphabet, text), 1e-3)
     at = 0.0
@@ -210,8 +208,8 @@ def _measure_word(alphabet: Alphabet, word: str) -> float:
 
 
 def join_letters(alphabet: Alphabet, letters: Sequence[SpokenWord]) -> list[SpokenWord]:
-    """Return the words that letters make whose times are told one by one: a blank parts words, and so does
-    each letter that is a syllable.
+    """Return the words of letters that have a time each. Blanks separate words, and so does each letter that
+    is a syllable.
     """
     out: list[SpokenWord] = []
     parted = True
@@ -235,7 +233,7 @@ def told_text(timing: LineTiming) -> str:
 
 
 def timed_seconds(timing: LineTiming, duration: float | None) -> float:
-    """Return how long a line lasts, to whole rows of a mouth's track, so that what is added to it later moves
+    """Return how long a line lasts, rounded to whole rows of the mouth's track, so that later additions move
     nothing. duration: of its sound, None for as long as its words and shapes need.
     """
     last = _end_of(timing)
@@ -243,8 +241,8 @@ def timed_seconds(timing: LineTiming, duration: float | None) -> float:
 
 
 def timed_sounds(alphabet: Alphabet, timing: LineTiming) -> Spelled:
-    """Return the mouth's pieces and the syllables of a line's words and shapes: shapes are the mouth's where
-    any are told, words those of gestures and blinks.
+    """Return the mouth's pieces and the syllables of a line's words and shapes: the mouth follows the shapes
+    if there are any; gestures and blinks follow the words.
     """
     out = Spelled()
     for word in timing.words:
@@ -269,7 +267,7 @@ def timed_sounds(alphabet: Alphabet, timing: LineTiming) -> Spelled:
 
 
 def _ends(marks: Sequence[VisemeMark]) -> list[float]:
-    """Return when each mark is over: several at one time are the mouth's together."""
+    """Return when each mark ends: marks at the same time show together."""
     out: list[float] = []
     end, at = 0.0, -1.0
     for mark in reversed(marks):
@@ -281,9 +279,9 @@ def _ends(marks: Sequence[VisemeMark]) -> list[float]:
 
 
 def tells_on(old: LineTiming, new: LineTiming) -> bool:
-    """Return whether what is told of a line after its end is of the same line: it begins after the last word
-    or shape that was told, or tells all again with more behind it. Else somebody says something else under
-    the same id.
+    """Return whether a piece that comes after the end of a line belongs to the same line: it begins after the
+    last known word or shape, or repeats all with more behind it. Otherwise it is something else under the
+    same id.
     """
     if len(new.words) > 0 and len(old.words) > 0:
         first = new.words[0]
@@ -311,9 +309,9 @@ def shifted(timing: LineTiming, by: float) -> LineTiming:
 
 
 def place_told(old: LineTiming, new: LineTiming, said: float) -> LineTiming:
-    """Return what is told of a line later, when it is said: a piece that counts its times from its own
-    beginning comes after what was told, and what comes after its time is said at once, and so is what
-    follows it. said: seconds of the line that are over.
+    """Return a later piece of a line with the times at which it is said. A piece that counts from its own
+    beginning follows the earlier pieces. A piece that comes too late is said at once, and everything after it
+    is delayed. said: seconds of the line that are over.
     """
     end = _end_of(old)
     if restarts(old, new, said):
@@ -332,8 +330,8 @@ def place_told(old: LineTiming, new: LineTiming, said: float) -> LineTiming:
 
 
 def restarts(old: LineTiming, new: LineTiming, said: float) -> bool:
-    """Return whether what is told of a line is a piece of its own, which begins at 0: it lies where the line
-    begins, and does not tell that again.
+    """Return whether a piece of a line counts its times from 0 again: it lies at the beginning of the line,
+    but does not repeat it.
     """
     if len(old.words) > 0 and len(new.words) > 0:
         same = 0
@@ -360,7 +358,7 @@ def _end(word: SpokenWord) -> float:
 
 
 def _end_of(timing: LineTiming) -> float:
-    """Return when the last word or shape is over."""
+    """Return when the last word or shape ends."""
     end = max([0.0, *[_end(word) for word in timing.words]])
     if len(timing.marks) > 0:
         mark = timing.marks[-1]
@@ -369,8 +367,8 @@ def _end_of(timing: LineTiming) -> float:
 
 
 def extended(old: LineTiming, new: LineTiming, said: float) -> LineTiming:
-    """Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up
-    to where the new begins; of a word or a shape that has begun meanwhile the rest is said.
+    """Return a line's timing with a later piece: the old timing stays up to `said` seconds, and up to the
+    beginning of the new piece. Of a word or shape that has begun meanwhile, the rest is said.
     """
     words = list(old.words)
     begun = max([-1.0, *[word.start for word in old.words if word.start < said]])

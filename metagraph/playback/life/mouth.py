@@ -1,8 +1,8 @@
-"""The mouth over time: from pieces of speech, each with one mouth shape, to smooth weights of all shapes.
+"""The mouth over time: turn pieces of speech, each with one mouth shape, into smooth weights of all shapes.
 
-Coarticulation after Cohen and Massaro (1993): every piece rules the mouth around its own time, begins before
-it is heard and lingers after it; what the mouth shows is the mean of all pieces weighted by how much each
-rules. A mean never closes a mouth, so lips that meet (p, b, m) and teeth on the lip (f, v) are laid over it
+Coarticulation after Cohen and Massaro (1993): every piece dominates the mouth around its own time, begins
+before it is heard and lingers after it. The mouth shows the mean of all pieces, weighted by their dominance.
+A mean never closes a mouth. So lips that meet (p, b, m) and teeth on the lip (f, v) are added on top
 (`_closed`): in their middle nothing else shows, however quick the speech is. Lips round for a rounded vowel
 as soon as the consonants before it begin (look-ahead, Henke 1966), at most a quarter of a second before it
 (Bell-Berti and Harris 1981 found it begin at about a fixed time before the vowel). The numbers are ours.
@@ -45,8 +45,8 @@ class MouthPiece:
 
 
 def mouth_track(pieces: Sequence[MouthPiece], duration: float) -> list[list[float]]:
-    """Return rows `[K][15]` of the shapes' weights, summing to 1; shut at both ends. Their times are evenly
-    spaced from 0 to the duration, at least 1 ms.
+    """Return rows `[K][15]` of the shapes' weights, which sum to 1; the mouth is shut at both ends. Their
+    times are evenly spaced from 0 to the duration, at least 1 ms.
     """
     count = max(2, ceil(duration / STEP - 1e-6) + 1)  # as many for 0.88 s as languages that divide otherwise
     step = max(duration, 1e-3) / (count - 1)
@@ -84,7 +84,7 @@ def mouth_track(pieces: Sequence[MouthPiece], duration: float) -> list[list[floa
 
 
 def _gates(pieces: Sequence[MouthPiece], viseme: str, count: int, step: float) -> list[tuple[float, float]]:
-    """Return rows (how far a closure has come, how far it keeps the other one away), 0..1."""
+    """Return rows (how far a closure has progressed, how far it suppresses the other one), 0..1."""
     out = [(0.0, 0.0) for row in range(count)]
     for piece in pieces:
         if piece.viseme != viseme:
@@ -101,7 +101,7 @@ def _gates(pieces: Sequence[MouthPiece], viseme: str, count: int, step: float) -
 
 
 def _closed(row: list[float], lips: tuple[float, float], teeth: tuple[float, float]) -> list[float]:
-    """Return a row with closures laid over it: as much of it is left as they leave open."""
+    """Return a row with the closures on top: they suppress the rest as far as they are closed."""
     most = max(lips[0], teeth[0])
     if most <= 0:
         return row
@@ -115,8 +115,8 @@ def _closed(row: list[float], lips: tuple[float, float], teeth: tuple[float, flo
 
 
 def soften(out: list[float], before: Sequence[float], now: Sequence[float], after: Sequence[float]) -> None:
-    """Write shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they
-    are now, and leave the others what room they leave: smoothing must not part lips that meet.
+    """Write the shapes without silence `[14]`, smoothed over three moments. Shapes that close the mouth keep
+    their present weights, and the others share what is left: smoothing must not part lips that meet.
     """
     for n in range(len(out)):
         out[n] = 0.25 * before[n] + 0.5 * now[n] + 0.25 * after[n]
@@ -134,8 +134,8 @@ def rest() -> list[float]:
 
 
 def accents_of(peaks: Sequence[float], strengths: Sequence[float]) -> list[float]:
-    """Return the times of stressed syllables: the first peak, then the strongest that have no stronger one
-    within `ACCENT` seconds. People blink and gesture on these, not on every syllable.
+    """Return the times of stressed syllables: the first peak, then those with no stronger one within `ACCENT`
+    seconds. People blink and gesture on these, not on every syllable.
     """
     taken: list[float] = []
     for i in sorted(range(len(peaks)), key=lambda i: (0 if i == 0 else 1, -strengths[i], peaks[i])):

@@ -1,8 +1,8 @@
-"""When the life layers do what: drawn from the seed, event by event, then pure in time.
+"""The events of the life layers: drawn from the seed one by one, and then a function of time.
 
-Each event depends only on the one before it and on what is asked meanwhile, and its chance on its number. So
-a schedule grows as a plan does: what has begun stays, tick by tick gives what one call gives, and what lies
-behind can be forgotten.
+Each event depends only on the previous one and on the requests meanwhile; its random draw depends on its
+number. So a schedule grows as a plan does: events that have begun stay, many short extensions give the same
+as one long one, and past events can be forgotten.
 """
 
 from __future__ import annotations
@@ -61,14 +61,14 @@ STRETCH = 0.5
 
 @dataclass(frozen=True)
 class Schedule:
-    """Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's rows stand in the order
-    given here.
+    """Everything that the life layers do by themselves from 0 to `end` seconds, in lanes. The columns of a
+    lane's rows are listed here.
 
-    modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length
-    s, depth. aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades:
-    offset to the left and up, degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. swells,
-    emphases: of the face (`expressions`). drawn: seconds up to which the lanes are filled; the rest is what
-    they were drawn from.
+    modes: index in MODES. moods: valence, arousal, intensity. targets: what the gaze looks at. breaths:
+    length s, depth. aversions: end s, right-to-left and upward part of the offset (of life's angle).
+    saccades: offset to the left and up, degrees. blinks: 0 spontaneous, 1 on a stressed syllable, 2
+    requested. swells, emphases: of the face (`expressions`). drawn: seconds up to which the lanes are filled;
+    the rest is what they were drawn from.
     """
 
     end: float = 0.0
@@ -88,9 +88,7 @@ class Schedule:
     seed: Bits = field(default=0, compare=False)
 
     def since(self, seconds: float) -> Schedule:
-        """Return the schedule without what ended before `seconds`; what is drawn on from it stays as it would
-        have been.
-        """
+        """Return the schedule without events that ended before `seconds`; later draws do not change."""
         breaths = self.breaths.since(seconds)
         aversions = self.aversions.since(seconds)
         saccades = self.saccades.since(seconds)
@@ -130,10 +128,10 @@ def schedule(
     before: Schedule,
     now: float,
 ) -> Schedule:
-    """Return the schedule to `end` seconds. What `before` holds that begins before `now` stays exactly as it
-    was.
+    """Return the schedule to `end` seconds. Events of `before` that begin before `now` stay exactly as they
+    were.
 
-    What it holds for later is kept, too, where nothing it was drawn from has changed.
+    Its later events stay, too, if nothing that they were drawn from has changed.
     """
     if not life.on:
         return replace(before, end=end, life=life, track=track, voices=voices, seed=seed)
@@ -165,7 +163,7 @@ def schedule(
 
 
 def _change(before: Schedule, life: Life, track: Track, voices: Mapping[str, Voice], seed: Bits) -> str:
-    """Return "" where nothing a schedule was drawn from has changed, "places" where only those have, else
+    """Return "" if nothing that a schedule was drawn from has changed, "places" if only places have, else
     "all".
     """
     if before.track is None or before.seed != seed or not is_same_life(before.life, life):
@@ -179,9 +177,9 @@ def _change(before: Schedule, life: Life, track: Track, voices: Mapping[str, Voi
 
 @dataclass
 class LifeDraw:
-    """One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks
-    change; manners: what mode and mood make of the amounts from each on;
-    strict: 1 where the look then is, else 0. phrases: when the character begins to speak.
+    """One extension: lanes filled from `cut` to `drawn` seconds. edges: when modes, moods or strict looks
+    change; manners: the factors of the amounts from each edge on; strict: 1 if the look is strict from there
+    on, else 0. phrases: when the character begins to speak.
     """
 
     life: Life
@@ -200,7 +198,7 @@ class LifeDraw:
     phrases: list[float] = field(default_factory=list)
 
     def begin(self, cut: float) -> None:
-        """Lay modes, moods and strict looks out in one row of segments."""
+        """Combine modes, moods and strict looks into one list of segments."""
         self.cut = cut
         talks = [change.start for change in self.track.modes if change.mode == "talking"]
         self.phrases = sorted([*[speech.start for speech in self.track.speeches], *talks])
@@ -222,21 +220,21 @@ class LifeDraw:
             self.strict.append(1 if self.targets[look].strict else 0)
 
     def key(self, what: str, number: int) -> Bits:
-        """Return what keys the chances of an event: those of `chance_of`, 0..1, without the ends."""
+        """Return the key of an event's random numbers, for `chance_of`."""
         return keyed(self.seed, what, str(number))
 
     def place_at(self, seconds: float) -> int:
-        """Return the place of the segment that a time is in."""
+        """Return the index of the segment that contains a time."""
         return max(0, bisect_right(self.edges, seconds) - 1)
 
     def thinks(self, seconds: float) -> bool:
-        """Return whether the character thinks at a time: then it looks up and aside, never down."""
+        """Return whether the character is thinking at a time: then it looks up and aside, never down."""
         mode = max(0, bisect_right(self.modes.times, seconds) - 1)
         return MODES[int(self.modes.rows[mode][0])] == "thinking"
 
     def after(self, seconds: float, need: float, rates: Sequence[float]) -> float:
-        """Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each
-        segment; infinity where it is not before the end.
+        """Return when `need` seconds have passed since `seconds` on a clock that runs at these rates, one for
+        each segment; infinity if that is after the end.
         """
         at = seconds
         left = need
@@ -252,8 +250,8 @@ class LifeDraw:
         return math.inf
 
     def breaths(self, lane: Lane) -> Lane:
-        """Each breath follows the one before; the first began before time 0, so that not everybody breathes
-        alike.
+        """Draw breaths, each after the previous one. The first began before time 0, so that characters do not
+        breathe in step.
         """
         times: list[float] = []
         rows: list[list[float]] = []
@@ -299,7 +297,7 @@ class LifeDraw:
         return wanted if wanted <= (1.0 + STRETCH) * length else length
 
     def saccades(self, lane: Lane) -> Lane:
-        """The eyes' small jumps."""
+        """Draw the small jumps of the eyes."""
         if self.life.saccade_rate <= 0 or self.calm <= 0:
             return lane
         mean = max(60.0 / self.life.saccade_rate, FIXATION + 0.01)
@@ -322,7 +320,7 @@ class LifeDraw:
             number += 1
 
     def aversions(self, lane: Lane) -> Lane:
-        """Looks away for a moment."""
+        """Draw short looks away."""
         life = self.life
         if life.aversion_rate <= 0 or life.aversion_length <= 0 or life.aversion_angle <= 0 or self.calm <= 0:
             return lane
@@ -356,7 +354,9 @@ class LifeDraw:
             number += 1
 
     def blinks(self, lane: Lane) -> Lane:
-        """Blinks of themselves, on stressed syllables and asked for, whichever comes first."""
+        """Draw blinks: spontaneous ones, those on stressed syllables and requested ones, in the order in
+        which they come.
+        """
         life = self.life
         shut = life.blink_close + life.blink_open
         mean = 60.0 / life.blinks if life.blinks > 0 and self.calm > 0 else math.inf
@@ -425,7 +425,9 @@ def _draw(
     drawn: float,
     before: Schedule,
 ) -> LifeDraw:
-    """Return what extends a schedule from `cut` to `drawn` seconds, with modes and looks in place."""
+    """Return the draw that extends a schedule from `cut` to `drawn` seconds, with modes and looks
+    filled in.
+    """
     modes = before.modes.until(cut)
     last = int(modes.rows[-1][0]) if len(modes.rows) > 0 else -1
     times: list[float] = []

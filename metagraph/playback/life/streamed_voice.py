@@ -1,10 +1,10 @@
-"""The mouth shapes a voice makes, heard from its samples as they come in, where nobody tells them: the levels
-of four bands beside the loudest that was heard. Nothing is waited for but a shape's shortest length, so that
-every engine can hear what it plays.
+"""The mouth shapes of a voice, detected from its samples as they come in, from the levels of four bands
+relative to the loudest so far. The only delay is the shortest length of a shape, so every engine can analyse
+the sound that it plays.
 
-Open vowels have more around 800 Hz, the first formant of an open mouth, than around 300; tongues in front
-more around 2200, their second formant; sibilants most of all above 3500. The bounds are ours, chosen beside
-what `speech.sound` makes of whole recordings.
+Open vowels have more energy around 800 Hz, the first formant of an open mouth, than around 300 Hz. Front
+vowels have more around 2200 Hz, their second formant. Sibilants have most above 3500 Hz. The bounds are ours,
+chosen by comparison with the results of `speech.sound` on whole recordings.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ OPEN = -1.7  # dB of the second band beside the first: an open mouth, and
 HALF = -5.0  # half open
 FRONT_HALF = -6.0  # dB of the third band beside the second: the tongue is in front, of half open mouths
 FRONT = -8.5  # and of others
-LEAST = 0.03  # seconds: what is shorter is no shape
-STEP = 0.06  # seconds after which a shape that grows or wanes
-GROWS = 0.15  # by so much is told again
-BEHIND = 0.25  # seconds by which a piece may come after its time; one that is later is heard as it comes
+LEAST = 0.03  # seconds: anything shorter is not a shape
+STEP = 0.06  # seconds after which a shape that gets stronger or weaker
+GROWS = 0.15  # by this much is reported again
+BEHIND = 0.25  # seconds by which a piece may come late; a later one is heard when it comes
 
 
 @dataclass
 class StreamedVoice:
-    """A voice that is heard. rate: samples a second, 8000 or more. seconds: up to which it was heard. The
-    rest is what it remembers. missed: seconds of the line in which no sound came.
+    """The state of a voice that is analysed. rate: samples a second, 8000 or more. seconds: how much of it
+    was heard. missed: seconds of the line in which no sound came. The other fields are memory.
     """
 
     rate: float
@@ -57,7 +57,7 @@ class StreamedVoice:
     energy: list[float] = field(default_factory=list)
 
     def hear(self, samples: Sequence[float]) -> list[VisemeMark]:
-        """Take in the next samples, -1..1; return the shapes that begin in them: visemes of the set "oculus",
+        """Analyse the next samples, -1..1; return the shapes that begin in them: visemes of the set "oculus",
         at seconds from the line's start.
         """
         out: list[VisemeMark] = []
@@ -80,7 +80,7 @@ class StreamedVoice:
         return out
 
     def follow(self, said: float) -> None:
-        """Go on where the line is, when its sound came too late. said: seconds of the line that are over."""
+        """Skip to where the line is if its sound came too late. said: seconds of the line that are over."""
         if self.seconds < said - BEHIND:
             self.missed += said - self.seconds
             self.seconds = said
@@ -98,7 +98,7 @@ class StreamedVoice:
                 self.energy.append(0.0)
 
     def _judge(self, size: int) -> bool:
-        """Tell what the last moment is; return whether a shape begins or changes, at `told`."""
+        """Classify the last moment; return whether a shape begins or changes, at `told`."""
         now = self.judged * size / self.rate
         levels = [10.0 / math.log(10.0) * math.log(energy / size + 1e-12) for energy in self.energy]
         for band in range(len(self.energy)):
@@ -123,7 +123,7 @@ class StreamedVoice:
         return False
 
     def _shape_of(self, levels: Sequence[float]) -> str:
-        """Return the shape of a moment. levels: dB of the bands, less the highest at low rates."""
+        """Return the shape of a moment. levels: dB of the bands, without the highest band at low rates."""
         low, middle, high = levels[0], levels[1], levels[2]
         if len(levels) > 3 and levels[3] > self.loudest + HISSING and levels[3] > max(low, middle) + HISS:
             return "SS"

@@ -1,10 +1,11 @@
-"""How who listens takes up the mood of who talks with it, and laughs along: moods told for it, which posture,
-face and life then show as any others.
+"""How a listener takes up the mood of its partner and laughs along. The result is moods, which posture, face
+and life show like any others.
 
 What is known and followed here: faces take up others' expressions weakly, within about a second of seeing
 them (Dimberg 1982), as far as they are friendly: happy and sad ones, hardly angry ones (Hess and Fischer
 2013); laughter brings smiles and laughter, often but not always (Provine 1992). How much, how late and how
-often is ours. Neutral moods are not taken up: who has a mood of its own keeps it before a calm face.
+often is ours. Neutral moods are not taken up: a character with a mood of its own keeps it in front of a calm
+face.
 """
 
 from __future__ import annotations
@@ -29,15 +30,15 @@ LAUGH_AROUSAL = 0.45
 
 @dataclass(frozen=True, slots=True)
 class Laugh:
-    """A laugh of the other's, seconds."""
+    """A laugh of the other character, in seconds."""
 
     start: float
     end: float
 
 
 def taken_up(own: Mood, other: Mood, share: float) -> Mood:
-    """Return the mood of who sees another's: `share`, 0..1, of the way there; its own before a neutral
-    one.
+    """Return the mood of a character that sees another's: `share`, 0..1, of the way to it; its own mood if
+    the other's is neutral.
     """
     if other.valence == 0 and other.arousal == 0:
         return own
@@ -52,8 +53,8 @@ def taken_up(own: Mood, other: Mood, share: float) -> Mood:
 def moods_taken_up(
     own: Moods, other: Moods, end: float, share: float, seed: Bits, who: str
 ) -> list[MoodFrom]:
-    """Return what is told of the mood of who sees the other's from 0 to `end` seconds, by start. own: its
-    mood without; who: a key of the other, which draws how late each is taken up.
+    """Return the moods of a character that sees the other's, from 0 to `end` seconds, by start. own: its mood
+    without the other; who: the key of the other, from which each delay is drawn.
     """
     edges = mood_edges(other, 0.0, end)
     for edge in mood_edges(own, 0.0, end):
@@ -74,8 +75,8 @@ def moods_taken_up(
 
 
 def laughs_along(own: Moods, laughs: Sequence[Laugh], share: float, seed: Bits, who: str) -> list[MoodFrom]:
-    """Return what is told of the mood of who laughs along with `share`, 0..1, of the other's laughs, by
-    start.
+    """Return the moods of a character that laughs along with `share`, 0..1, of the other's
+    laughs, by start.
     """
     out: list[MoodFrom] = []
     for n, laugh in enumerate(laughs):

@@ -1,4 +1,4 @@
-"""All that was asked for and lasts, in order; see `items`. Times are seconds."""
+"""All requests that last, in order; see `items`. Times are seconds."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Track:
-    """All of it, each by start. Speeches do not overlap."""
+    """All lasting requests, each kind sorted by start. Speeches do not overlap."""
 
     looks: Sequence[LookAt] = ()
     speeches: Sequence[Speech] = ()
@@ -63,7 +63,7 @@ class Track:
         )  # fmt: skip
 
     def idents(self) -> list[str]:
-        """Return the ids of all of it."""
+        """Return the ids of all items."""
         out = [x.id for x in self.looks]
         out += [x.id for x in self.speeches]
         out += [x.id for x in self.modes]
@@ -79,8 +79,8 @@ class Track:
         return last is not None and last.on and seconds < last.end
 
     def told_mode(self, seconds: float) -> Mode | None:
-        """Return the mode that was asked for at a time, or talking while something is said; None where
-        neither tells.
+        """Return the mode requested at a time, or talking while something is said; None if
+        neither applies.
         """
         asked = bisect_right(self.modes, seconds, key=lambda m: m.start) - 1
         if asked >= 0 and self.modes[asked].mode is not None:
@@ -89,8 +89,8 @@ class Track:
         return "talking" if said >= 0 and seconds < self.speeches[said].end else None
 
     def without(self, idents: AbstractSet[str], now: float = -math.inf) -> Track:
-        """Return the track without items of these ids that begin at `now` or later; what has begun ends now,
-        if it can.
+        """Return the track without items of these ids that begin at `now` or later; those that have begun end
+        now, if they can.
         """
         if len(idents) == 0 or not any(ident in idents for ident in self.idents()):
             return self
@@ -117,13 +117,13 @@ class Track:
         )  # fmt: skip
 
     def plus(self, items: Collection[Item]) -> Track:
-        """Return the track with more items; of speeches that overlap the later or more important cuts the
+        """Return the track with more items; if speeches overlap, the later or more important one cuts the
         other short.
         """
         return self.joined(by_kind(items)) if items else self
 
     def joined(self, more: Track) -> Track:
-        """Return the track with those of another, whose speeches may overlap each other's."""
+        """Return the track with the items of another one, whose speeches may overlap."""
         if len(more.idents()) == 0:
             return self
         looks = list(self.looks)
@@ -153,7 +153,7 @@ class Track:
         )
 
     def since(self, seconds: float) -> Track:
-        """Return the track without what no time from `seconds` on needs."""
+        """Return the track without items that are not needed from `seconds` on."""
         # Those that no later one has replaced; also what is over: it tells since when what shows has shown.
         looks: list[LookAt] = []
         for look in self.looks:
@@ -179,11 +179,13 @@ class Track:
         )  # fmt: skip
 
     def last_speech(self, ident: str) -> Speech | None:
-        """Return the last of an id that is said."""
+        """Return the last speech with an id."""
         return next((s for s in reversed(self.speeches) if s.id == ident), None)
 
     def draws_like(self, other: Track) -> bool:
-        """Whether all is the same that chance depends on: where things are, and what stays, is not."""
+        """Return whether everything is the same that random draws depend on. Places and stays are not part of
+        it.
+        """
         if not alike_looks(self.looks, other.looks) or not alike_speeches(self.speeches, other.speeches):
             return False
         if not alike_felt(self.moods, other.moods):
@@ -191,7 +193,7 @@ class Track:
         return alike_modes(self.modes, other.modes) and alike_blinks(self.blinks, other.blinks)
 
     def like(self, other: Track) -> bool:
-        """Whether all is the same."""
+        """Return whether everything is the same."""
         if not alike_places(self.places, other.places) or not alike_stays(self.stays, other.stays):
             return False
         return self.draws_like(other)

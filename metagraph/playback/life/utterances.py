@@ -1,7 +1,7 @@
-"""What is done to something said: it is broken off, paused, gone on with, finished. An utterance is all that
-is said under one id, piece by piece, until it is over. Times are seconds.
+"""Break off, pause, resume and finish utterances. An utterance is everything that is said under one id, piece
+by piece, until it is over. Times are seconds.
 
-What is paused lies in a time that never comes (`PAUSED`), each utterance in a place of its own there.
+A paused utterance is moved to a time that never comes (`PAUSED`), each to a slot of its own.
 """
 
 from __future__ import annotations
@@ -25,24 +25,28 @@ TOGETHER = 1e-3  # seconds between two pieces of one utterance, at most
 
 
 def find_soon(now: float, lookahead: float) -> float:
-    """Return when a voice can begin: sooner than gestures, which blend. Nothing has been shown at the very
-    beginning.
+    """Return when a voice can begin: sooner than gestures, which blend. At the very beginning it can begin at
+    once, because nothing has been shown.
     """
     return now + min(lookahead, VOICE) if now > 0 else 0.0
 
 
 def is_paused(start: float) -> bool:
-    """Return whether what begins then is paused."""
+    """Return whether an item with this start is paused."""
     return start >= PAUSED
 
 
 def takes_more(speech: Speech) -> bool:
-    """Return whether a piece can be added to though it does not run: more was promised, or it is paused."""
+    """Return whether more can be added to a piece that is not being said: more was announced, or it is
+    paused.
+    """
     return speech.more or speech.start >= PAUSED
 
 
 def goes_on(speeches: Sequence[Speech], ident: str, now: float) -> bool:
-    """Return whether an utterance is not over at `now`: it is said, comes, is paused, or has more to come."""
+    """Return whether an utterance is not over at `now`: it is being said, will be said, is paused, or expects
+    more.
+    """
     last = next((s for s in reversed(speeches) if s.id == ident), None)
     return last is not None and (last.end > now or last.more)
 
@@ -58,9 +62,9 @@ def find_utterances(track: Track, what: str, now: float) -> list[str]:
 
 
 def find_stop(alphabet: Alphabet, track: Track, ident: str, soon: float, now: float) -> float:
-    """Return when the voice of an utterance stops that should: at the end of the sound that is made, by
-    `soon`; where its sounds are not known, or it pauses, at once; where it has not begun, when it would.
-    now: when gestures can stop.
+    """Return when the voice of an utterance stops: at the end of the current sound, at `soon` at the latest;
+    at once if its sounds are unknown or it is in a pause; at its start if it has not begun. now: when
+    gestures can stop.
     """
     first = soon - EARLIER if now > soon else soon
     running = next((s for s in track.speeches if s.id == ident and s.start < first and first < s.end), None)
@@ -80,12 +84,12 @@ def find_stop(alphabet: Alphabet, track: Track, ident: str, soon: float, now: fl
 
 
 def find_slot(track: Track) -> float:
-    """Return a time among those that never come in which nothing lies."""
+    """Return a free slot among the times that never come."""
     return max([PAUSED, *[s.end + 1.0 for s in track.speeches if s.start >= PAUSED]])
 
 
 def break_off(track: Track, ident: str, stop: float) -> Track:
-    """Return the track with an utterance over at `stop`: what comes of it is not said."""
+    """Return the track with an utterance ended at `stop`: its later pieces are not said."""
     speeches: list[Speech] = []
     for speech in track.speeches:
         if speech.id != ident or speech.end <= stop:
@@ -96,13 +100,13 @@ def break_off(track: Track, ident: str, stop: float) -> Track:
 
 
 def finish_speech(track: Track, ident: str, soon: float) -> Track:
-    """Return the track with an utterance that is over when all that is known of it was said."""
+    """Return the track with an utterance that is over once all its known pieces are said."""
     return _closed(track, list(track.speeches), ident, soon, False)
 
 
 def _closed(track: Track, speeches: Sequence[Speech], ident: str, now: float, cuts: bool) -> Track:
-    """Return the track with these speeches, of which an utterance has no more to come. cuts: whether it was
-    broken off.
+    """Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it
+    was broken off.
     """
     out = list(speeches)
     end = now
@@ -125,8 +129,8 @@ def _until(mood: MoodFrom, end: float) -> MoodFrom:
 
 
 def pause(track: Track, ident: str, made: AbstractSet[str], stop: float, slot: float) -> Track:
-    """Return the track with an utterance that is held from `stop` on, in `slot` (`find_slot`). made: ids of
-    what was asked for it; it waits as long, if it has not begun.
+    """Return the track with an utterance paused from `stop` on, in `slot` (`find_slot`). made: ids of
+    requests that belong to it; they wait, too, if they have not begun.
     """
     by = slot - stop
     kept: list[Speech] = []
@@ -153,7 +157,7 @@ def pause(track: Track, ident: str, made: AbstractSet[str], stop: float, slot: f
 
 
 def resume(track: Track, ident: str, made: AbstractSet[str], soon: float) -> Track:
-    """Return the track with an utterance that goes on at `soon`. made: as for `pause`."""
+    """Return the track with an utterance that continues at `soon`. made: as for `pause`."""
     held = [s for s in track.speeches if s.id == ident and s.start >= PAUSED]
     if len(held) == 0:
         return track
@@ -172,7 +176,7 @@ def _moved(
     track: Track, speeches: Sequence[Speech], made: AbstractSet[str], low: float, high: float, by: float
 ) -> Track:
     """Return the track with more speeches, and with the looks and moods of `made` that begin from `low` to
-    before `high` moved by so many seconds.
+    before `high` moved by a number of seconds.
     """
     looks: list[LookAt] = []
     for x in track.looks:
@@ -193,8 +197,8 @@ def _moved(
 
 
 def explain_end(speeches: Sequence[Speech], speech: Speech) -> str:
-    """Return why an utterance is over at the end of a piece of it: "finished", "interrupted" or "replaced";
-    "" where it is not over there.
+    """Return why an utterance is over at the end of a piece: "finished", "interrupted" or "replaced"; "" if
+    it is not over there.
     """
     coming = next((s for s in speeches if s.id == speech.id and s.start > speech.start), None)
     if speech.more or (coming is not None and is_same_utterance(speech, coming)):
@@ -205,7 +209,7 @@ def explain_end(speeches: Sequence[Speech], speech: Speech) -> str:
 
 
 def is_same_utterance(one: Speech, other: Speech) -> bool:
-    """Return whether a later piece of the same id goes on with what an earlier one says."""
+    """Return whether a later piece of the same id continues an earlier one."""
     if one.more or (other.skip > 0 and one.length is not None and one.over is None):
         return True
     return one.length is None and (other.start >= PAUSED or other.start - one.end < TOGETHER)

@@ -1,6 +1,4 @@
-"""What was asked of the life layers, as segments in time: which mode the character is in, and what it looks
-at.
-"""
+"""Requests of the life layers as segments in time: the mode of the character, and what it looks at."""
 
 from __future__ import annotations
 
@@ -26,8 +24,8 @@ BEGIN = 3
 
 @dataclass(frozen=True, slots=True)
 class GazeTarget:
-    """What is looked at from `start` on: a point, or a name whose place the project knows. since: when the
-    look at it began; its place may have changed meanwhile. asked: not of its own accord.
+    """The target of the gaze from `start` on: a point, or a name whose place the project knows. since: when
+    the look at it began; its place may have changed meanwhile. asked: whether a request set it.
     """
 
     start: float
@@ -38,14 +36,14 @@ class GazeTarget:
     asked: bool = False
 
     def like(self, other: GazeTarget) -> bool:
-        """Whether it is the same but for its times."""
+        """Return whether it is the same apart from its times."""
         if self.amount != other.amount or self.strict != other.strict or self.asked != other.asked:
             return False
         return is_same_spot(self.to, other.to)
 
 
 def mode_at(track: Track, seconds: float) -> Mode:
-    """Return the mode asked for; where none is, talking while something is said and idle otherwise."""
+    """Return the requested mode; without one, talking while something is said and idle otherwise."""
     told = track.told_mode(seconds)
     return "idle" if told is None else told
 
@@ -69,7 +67,7 @@ def modes_between(track: Track, start: float, end: float) -> list[tuple[float, i
 
 
 def moods_of(life: Life, track: Track) -> Moods:
-    """Return what a character is in the mood for: what its life has set, and what is told over time."""
+    """Return the moods of a character: the one set in its life layers, and those requested over time."""
     return Moods(Mood(life.valence, life.arousal, life.intensity), track.moods)
 
 
@@ -84,7 +82,7 @@ def moods_between(moods: Moods, start: float, end: float) -> list[tuple[float, M
 
 
 def ways_in(ways: Manner, mood: Mood) -> Manner:
-    """Return what a mode makes of the amounts, in a mood."""
+    """Return the factors of the amounts for a mode and a mood."""
     if mood.neutral:
         return ways
     of = life_of(mood)
@@ -92,19 +90,21 @@ def ways_in(ways: Manner, mood: Mood) -> Manner:
 
 
 def targets_between(track: Track, start: float, end: float) -> list[GazeTarget]:
-    """Return what is looked at from `start` to before `end`; the first begins at `start`.
+    """Return the targets of the gaze from `start` to before `end`; the first begins at `start`.
 
-    The latest look holds until it ends or another of its importance or more begins; a lesser one waits
-    beneath.
+    The latest look holds until it ends or another of at least the same importance begins; a less important
+    one waits.
     """
     changes = [(x.start, LOOK, n) for n, x in enumerate(track.looks)]
     changes += [(x.end, OVER, n) for n, x in enumerate(track.looks)]
     changes += [(p.start, PLACE, n) for n, p in enumerate(track.places) if p.start >= start]
     changes.append((start, BEGIN, 0))
     changes = sorted(changes, key=lambda c: (c[0], c[1]))
-    looks: list[int] = []  # places of looks, the most important first; those beneath are older or lesser
+    looks: list[
+        int
+    ] = []  # indices of looks, the most important first; the others are older or less important
     places: dict[str, Point] = {}
-    for place in track.places:  # of a point that is told again and again there are thousands
+    for place in track.places:  # a point that is sent again and again has thousands
         if place.start < start:
             places[place.name] = place.point
     chosen = -1

@@ -1,4 +1,4 @@
-"""By when each meta action of a plan has to be over."""
+"""The times by which the meta actions of a plan have to be over."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 from metagraph.playback.plan import MetaAction
 
-LOOKED_AT = 6  # how many that follow a meta action are told
+LOOKED_AT = 6  # how many of those that follow a meta action are listed
 
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """A meta action with when the next more important one begins (limit), and the next as important that was
-    asked for (wish); infinity where there is none. after: those as important that were asked for and say how
-    late they may be, the next first.
+    """A meta action and its bounds. limit: when the next more important one begins; wish: when the next
+    equally important request begins; infinity if there is none. after: equally important requests that say
+    how late they may be, the next one first.
     """
 
     meta: MetaAction
@@ -25,7 +25,7 @@ class Bound:
 
 @dataclass(slots=True)
 class _First:
-    """The first of some meta actions of a rank, written or asked for, and when it starts."""
+    """The first of some meta actions of a rank, written or requested, and when it starts."""
 
     rank: float
     written: bool
@@ -33,7 +33,7 @@ class _First:
 
 
 def bounds(metas: Sequence[MetaAction]) -> list[Bound]:
-    """Return each meta action with what bounds it."""
+    """Return each meta action with its bounds."""
     out: list[Bound] = []
     first: list[_First] = []
     pressing: list[MetaAction] = []  # what says how late it may be, the last first
@@ -64,8 +64,8 @@ def bounds(metas: Sequence[MetaAction]) -> list[Bound]:
 
 
 def begins(meta: MetaAction) -> float:
-    """Return when a meta action may begin at the earliest. One whose stroke is judged is placed where that
-    comes.
+    """Return the earliest time at which a meta action may begin. One whose stroke is judged is placed where
+    its stroke comes.
     """
     if meta.request.late is not None and meta.request.stroke is not None:
         return min(meta.start, meta.request.start)

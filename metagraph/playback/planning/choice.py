@@ -1,7 +1,7 @@
-"""Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language can
-mix alike.
+"""Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language mixes
+in the same way.
 
-Nothing is remembered between draws, so changing one request leaves the draws of all others as they were.
+Draws remember nothing, so a change of one request does not change the draws of the others.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ def key32(seed: Bits, *words: str) -> Bits:
     """Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero
     byte, then mixed.
 
-    The seed, mixed, is xored into FNV's offset basis.
+    The mixed seed is xored into FNV's offset basis.
     """
     return mix(keyed(seed, *words))
 
 
 def keyed(seed: Bits, *words: str) -> Bits:
-    """Return what draws of one key have in common: the hash of a seed and words before it is mixed."""
+    """Return the hash of a seed and words before it is mixed, which all draws of one key share."""
     value = begun(seed)
     for word in words:
         value = absorb(value, word)
@@ -37,13 +37,14 @@ def uniform(seed: Bits, *words: str) -> float:
 
 
 def chance_of(key: Bits, purpose: str) -> float:
-    """Return what `uniform` does with one word more than a key has."""
+    """Return the number that `uniform` returns for a key and one more word."""
     return (mix(absorb(key, purpose)) + 0.5) / ALL
 
 
 def log_normal(mean: float, deviation: float, u: float, v: float) -> float:
-    """Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, which any language can do
-    alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+    """Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, in a way that any
+    language can compute: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a /
+    2)`.
     """
     share = deviation / mean
     spread = math.log1p(share * share)
@@ -52,16 +53,15 @@ def log_normal(mean: float, deviation: float, u: float, v: float) -> float:
 
 
 def pick(seed: Bits, key: str, purpose: str, weights: Mapping[str, float]) -> str:
-    """Return one of the ids, as `picked` does."""
+    """Return one of the ids, chosen as by `picked`."""
     return picked(keyed(seed, key), purpose, weights)
 
 
 def picked(key: Bits, purpose: str, weights: Mapping[str, float]) -> str:
     """Return one of the ids, id k with probability weight_k / sum.
 
-    Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or
-    removing one candidate changes the choice only where that candidate wins. Raises ValueError when no weight
-    is positive.
+    Each id draws its own exponential time, -log(u_k) / weight_k, and the shortest wins. So adding or removing
+    a candidate changes the choice only if that candidate wins. Raises ValueError when no weight is positive.
     """
     best, shortest = "", math.inf
     start = absorb(key, purpose)

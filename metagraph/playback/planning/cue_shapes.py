@@ -1,4 +1,4 @@
-"""How an action would play for a request: from when, for how long, and how late.
+"""How an action would play for a request: when it begins, how long it lasts and how late it is.
 
 A gesture waits for its stroke or cuts its preparation to catch up with it; its hold is stretched, and its
 retraction may be cut (Borer et al., section 6.2).
@@ -23,8 +23,8 @@ SHARED = 0.25  # seconds within which two strokes may be one
 
 @dataclass(frozen=True, slots=True)
 class CueShape:
-    """How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a
-    cue.
+    """How an action would play: from `start` on, for `length` seconds, at least `shortest`; the other fields
+    are those of a cue.
     """
 
     start: float
@@ -41,7 +41,7 @@ def shape_of(
     project: Project, action: Action, request: MetaRequest | None, now: float, speed: float
 ) -> CueShape:
     """Return how an action would play for a request from `now` on, or as a step on the way to it. speed: a
-    factor of its own.
+    factor of the action's own speed.
     """
     start, end = project.span(action)
     begin, entry, hold_from, hold_to, hold = now, start, 0.0, 0.0, 0.0
@@ -83,13 +83,13 @@ def shape_of(
 
 
 def fits_before(shape: CueShape, limit: float) -> bool:
-    """Whether something that plays so is over by a limit."""
+    """Return whether something with this shape is over by a limit."""
     return shape.start + shape.shortest <= limit + FITS
 
 
 def lateness(project: Project, action: Action, request: MetaRequest, shape: CueShape) -> float:
-    """Return by how many seconds an action that plays so comes late, at its stroke where one is asked
-    for; less than 0 before its time.
+    """Return by how many seconds an action with this shape comes late, measured at its stroke if the request
+    has one; below 0 if it comes early.
     """
     if request.stroke is not None and action.kind == "gesture":
         found = find_phases(project, action)
@@ -99,13 +99,13 @@ def lateness(project: Project, action: Action, request: MetaRequest, shape: CueS
 
 
 def slack_of(request: MetaRequest) -> float:
-    """Return by how many seconds a request may come late, 0 where it does not say."""
+    """Return by how many seconds a request may come late, 0 if it does not say."""
     return 0.0 if request.late is None else request.late
 
 
 def hurried(project: Project, action: Action, shape: CueShape) -> float:
-    """Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless
-    it was asked for.
+    """Return how many seconds a gesture takes if its retraction is cut and its hold is left out, unless the
+    request has a hold.
     """
     start, end = project.span(action)
     repeats = cycle_of(action.kind, action.timing, start, end) > 0
@@ -122,7 +122,7 @@ def hurried(project: Project, action: Action, shape: CueShape) -> float:
 
 
 def may_share(request: MetaRequest, other: MetaRequest) -> bool:
-    """Whether two requests may be met by one stroke."""
+    """Return whether one stroke may meet two requests."""
     if request.stroke is None or other.stroke is None:
         return False
     return (
@@ -135,7 +135,7 @@ def may_share(request: MetaRequest, other: MetaRequest) -> bool:
 
 
 def meets(action: Action, request: MetaRequest) -> bool:
-    """Whether an action is what a request for any asks for."""
+    """Return whether an action fits a request that does not name one."""
     return (
         all(tag in action.tags for tag in request.tags)
         and (request.limb is None or action.limb == request.limb)
@@ -144,7 +144,9 @@ def meets(action: Action, request: MetaRequest) -> bool:
 
 
 def remaining(meta: MetaAction, now: float) -> MetaRequest:
-    """Return what a meta action asks for; of a remainder, for as long as is left. A model says no length."""
+    """Return the request of a meta action; for a remainder, with the duration that is left. What a model
+    wrote has no duration.
+    """
     request = meta.request
     if request.duration is None or (meta.part == 0 and not meta.written):
         return request

@@ -1,4 +1,4 @@
-"""Actions and stances by what they are called."""
+"""Find actions and stances by id or name."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from metagraph.graph.model import Action, Layer, MetaGraph, Stance
 
 
 def action_called(graphs: Sequence[MetaGraph], word: str, layer: Layer | None) -> Action | None:
-    """Return the action of an id or, failing that, a name; of several of one name the likeliest. layer: None
-    for any.
+    """Return the action with an id or, failing that, with a name; of several with the same name, the
+    likeliest. layer: None for any.
     """
     for graph in graphs:
         found = graph.actions.get(word)
@@ -25,7 +25,7 @@ def action_called(graphs: Sequence[MetaGraph], word: str, layer: Layer | None) -
 
 
 def stance_called(graphs: Sequence[MetaGraph], word: str, layer: Layer | None) -> Stance | None:
-    """Return the stance of an id or, failing that, a name, in the first layer that has one so called."""
+    """Return the stance with an id or, failing that, with a name, in the first layer that has one."""
     for graph in graphs:
         if layer is None or layer == graph.layer:
             found = graph.stances.get(word)

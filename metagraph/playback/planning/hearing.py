@@ -1,5 +1,5 @@
-"""What asks do to a running plan: what they take back, what lasts from then on, and which layers have to be
-planned again.
+"""The effect of requests on a running plan: what they take back, what lasts from then on, and which layers
+have to be planned again.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ LISTENS = 2.0  # seconds for which the gaze stays with the partner who interrupt
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """track: what lasts. fresh: what is asked of layers, with what goes on after a pause. withdrawn: ids of
-    what was asked for before and is not any more; stopped: those of them that were taken back and not asked
-    for anew. touched: layers that asks have to do with.
+    """track: lasting items. fresh: requests of layers, with those that continue after a pause. withdrawn: ids
+    of earlier requests that no longer hold; stopped: those of them that were taken back, not replaced.
+    touched: layers that the requests affect.
     """
 
     track: Track
@@ -47,7 +47,7 @@ class Heard:
 
 
 def owners(ident: str) -> list[str]:
-    """Return the asks a request may have been made by: that of its own id, and those of which it would be a
+    """Return the ids of the asks from which a request may come: its own id, and those of which it would be a
     part.
     """
     out = [ident]
@@ -60,8 +60,8 @@ def owners(ident: str) -> list[str]:
 
 
 def makers(ident: str) -> list[str]:
-    """Return what a request goes with when it is taken back: its `owners`, and what is said that a gesture
-    was made for: "answer" for "answer/2".
+    """Return the ids with which a request is taken back: its `owners`, and the speech that a gesture belongs
+    to: "answer" for "answer/2".
     """
     out = owners(ident)
     said, slash, number = out[-1].rpartition("/")
@@ -78,9 +78,9 @@ def heard(
     soon: float,
     turning: Sequence[Layer],
 ) -> Heard:
-    """Return what asks do. requests, track: of the plan. meant: what is asked for, where speeches may
-    overlap. now: what begins before stays; soon: so for voices. turning: layers whose models perform one
-    thing in one mode and another in another.
+    """Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may
+    overlap in it. now: everything that begins earlier stays; soon: the same for voices. turning: layers whose
+    models perform differently in different modes.
     """
     more = meant.track()
     gone = set(meant.withdrawn)
@@ -93,7 +93,7 @@ def heard(
     words = add_speeches(meant, track, soon)
     before = [r.id for r in requests]
     before += track.idents()
-    # Who takes everything back still looks at whom it talks with.
+    # A client that takes everything back keeps the look at the user.
     user = {x.id for x in track.looks if x.start < now and is_same_spot(x.to, named("user"))}
     taken: set[str] = set()
     stopped: set[str] = set()
@@ -106,7 +106,7 @@ def heard(
             stopped.add(ident)  # what was made for the words before
         if ident in stopped or ident in gone or ("." in ident and any(o in gone for o in owners(ident))):
             taken.add(ident)
-    # Where the models may change stances again means nothing where they always might.
+    # Leave to change stances again means nothing if the models always may.
     staying = {s.layer for s in track.stays if s.on}
     for stay in more.stays:
         if stay.on:
@@ -126,7 +126,7 @@ def heard(
         or any(m.id in taken for m in track.modes)
         or any(s.id in taken for s in track.speeches)
     )
-    if turns:  # who talks moves otherwise than who listens
+    if turns:  # talking and listening characters move differently
         for layer in turning:
             touched.add(layer)
     if len(more.moods) > 0 or any(m.id in taken for m in track.moods):
@@ -150,9 +150,9 @@ def heard(
 
 @dataclass(frozen=True, slots=True)
 class AddedSpeeches:
-    """What speeches become beside those that are said already. said: all that are new or changed. begun: ids
-    of those of which an earlier one is in them, changed; on: ids of which what is said already goes on. anew:
-    ids under which something else was said before. moods: what is asked for with them.
+    """New speeches, combined with those that are being said. said: all that are new or changed. begun: ids of
+    changed earlier ones among them; on: ids of those that continue. `anew`: ids under which something else
+    was said before. moods: the moods requested with them.
     """
 
     said: Sequence[Speech]
@@ -162,8 +162,8 @@ class AddedSpeeches:
     moods: Sequence[MoodFrom]
 
     def leave(self, track: Track) -> Track:
-        """Return what of a track stays beside these: moods of what goes on last as long as that, where no
-        other is asked for.
+        """Return the part of a track that stays: moods of speeches that continue last as long as these,
+        unless another mood is requested.
         """
         if len(self.on) == 0:
             return track
@@ -185,7 +185,9 @@ class AddedSpeeches:
 
 
 def add_speeches(meant: Meaning, track: Track, soon: float) -> AddedSpeeches:
-    """Return what asks to say something make of a track: a line, something behind a line, or more of one."""
+    """Return the effect of asks to say something on a track: a new line, a line after another, or more of
+    one.
+    """
     said: list[Speech] = []
     begun: set[str] = set()
     on: set[str] = set()
@@ -230,8 +232,8 @@ def add_speeches(meant: Meaning, track: Track, soon: float) -> AddedSpeeches:
 
 
 def _steer(requests: Sequence[MetaRequest], heard: Heard, meant: Meaning, now: float, soon: float) -> Heard:
-    """Return what asks do with what is said: it is broken off, paused, gone on with or finished, in turn.
-    requests: of the plan before.
+    """Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the
+    plan before.
     """
     if len(meant.steered) == 0:
         return heard
@@ -265,8 +267,8 @@ def _steer(requests: Sequence[MetaRequest], heard: Heard, meant: Meaning, now: f
 
 @dataclass
 class SteeredSpeech:
-    """A track and requests while asks steer what is said. anew: ids of the requests that are asked for anew;
-    the rest is as in `Heard`.
+    """A track and requests while asks steer speech. `anew`: ids of the requests that are made again; the
+    other fields are as in `Heard`.
     """
 
     track: Track
@@ -277,11 +279,11 @@ class SteeredSpeech:
     anew: set[str] = field(default_factory=set)
 
     def idents(self) -> list[str]:
-        """Return the ids of all of it."""
+        """Return the ids of everything in it."""
         return [*[r.id for r in self.requests], *self.track.idents()]
 
     def interrupt(self, ident: str, made: AbstractSet[str], stop: float, now: float, soon: float) -> None:
-        """Break off an utterance at `stop`, and what was made for it at `now`."""
+        """Break off an utterance at `stop`, and the requests that belong to it at `now`."""
         if goes_on(self.track.speeches, ident, soon):
             self.track = break_off(self.track, ident, stop)
         if any(m.id in made for m in self.track.moods):
@@ -296,8 +298,8 @@ class SteeredSpeech:
         self.requests = [r for r in self.requests if r.id not in made]
 
     def pause(self, ident: str, made: AbstractSet[str], stop: float, now: float) -> None:
-        """Hold an utterance, and what was made for it and has not had its moment; what has begun goes
-        back.
+        """Pause an utterance, and the requests that belong to it and whose moment has not come; those that
+        have begun go back.
         """
         if is_paused(stop):
             return
@@ -319,7 +321,7 @@ class SteeredSpeech:
         self.requests = kept
 
     def resume(self, ident: str, made: AbstractSet[str], now: float, soon: float) -> None:
-        """Go on with an utterance that is paused, and with what waits for it."""
+        """Resume a paused utterance, and the requests that wait for it."""
         held = next((s for s in self.track.speeches if s.id == ident and is_paused(s.start)), None)
         if held is None:
             return
@@ -336,6 +338,6 @@ class SteeredSpeech:
         self.requests = kept
 
     def move_request(self, request: MetaRequest, by: float, least: float) -> MetaRequest:
-        """Return a request moved by so many seconds, to no earlier than `least`."""
+        """Return a request moved by a number of seconds, but not to before `least`."""
         stroke = None if request.stroke is None else request.stroke + by
         return replace(request, start=max(least, request.start + by), stroke=stroke)

@@ -1,5 +1,5 @@
-"""Planning one layer on: what was planned for later is taken back to its meta actions, merged with new
-requests, placed and performed again (Borer et al., section 6).
+"""Extend the plan of one layer: the later part of the plan is turned back into its meta actions, merged with
+new requests, placed and performed again (Borer et al., section 6).
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ class LayerDraft:
     """A layer placed in time, not yet performed.
 
     able: whether the layer can perform at all. done: meta actions that were performed before. placed: those
-    to be performed, in order; what a model wrote among them is performed as its mode says. reports: what was
-    told so far.
+    to perform, in order; those that a model wrote are performed as the mode says. reports: the reports so
+    far.
     """
 
     layer: Layer
@@ -50,9 +50,7 @@ class LayerDraft:
     written: list[MetaAction]
 
     def performed(self, metas: Sequence[MetaAction], end: float) -> LayerPlan:
-        """Return the layer's plan, with those of its meta actions performed that are given; `reports` then
-        tells all.
-        """
+        """Return the layer's plan with the given meta actions performed; `reports` is then complete."""
         cues: list[Cue] = []
         rests: list[Rest] = []
         if self.able:
@@ -83,12 +81,12 @@ def draft(
     stance: str | None,
     moods: Moods,
 ) -> LayerDraft:
-    """Return a layer's plan taken back to `now`, with what is asked for placed anew.
+    """Return a layer's plan cut at `now`, with the requests placed again.
 
-    chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of
-    the plan so far. fresh: requests, of all layers. replaced: ids of those that are asked for anew or
-    withdrawn; stopped: those withdrawn, whose running action is left. stance: which the layer would begin
-    in. moods: what it is in the mood for, and when.
+    chain: the model that writes when there are no requests, or None. kinds: the kinds of actions that the
+    layer has. told: reports of the plan so far. fresh: new requests, of all layers. replaced: ids of requests
+    that are replaced or withdrawn; stopped: those withdrawn, whose running action is left. stance: the stance
+    in which the layer would begin. moods: the mood over time.
     """
     layer = graph.layer
     asked = [meta_of(in_time(request, moods)) for request in fresh if request.layer == layer]
@@ -110,7 +108,7 @@ def draft(
                 again.add(meta.request.id)
     future: list[MetaAction] = []
     planned: dict[str, list[float]] = {}  # again: when those of a request start
-    judged: set[str] = set()  # those whose lateness is told by what is performed
+    judged: set[str] = set()  # those whose lateness is known once they are performed
     for meta in old.metas:
         if meta.request.id in again or meta.request.id in served:
             continue
@@ -119,7 +117,7 @@ def draft(
             if meta.request.late is not None:
                 judged.add(meta.request.id)
             planned[meta.request.id] = [*planned.get(meta.request.id, []), meta.start]
-    # What was told about time still holds; the rest will be told again by those that are planned again.
+    # Reports about time still hold; those that are planned again report the rest.
     done = [
         meta
         for meta in old.metas
@@ -165,7 +163,7 @@ def draft(
 
 
 def in_time(request: MetaRequest, moods: Moods) -> MetaRequest:
-    """Return a request that may begin as much earlier as its preparation takes longer in its mood."""
+    """Return a request that may begin earlier, by the extra time that its preparation takes in its mood."""
     if request.stroke is None:
         return request
     mood = mood_at(moods, request.stroke)
@@ -176,7 +174,9 @@ def in_time(request: MetaRequest, moods: Moods) -> MetaRequest:
 
 
 def meta_of(request: MetaRequest) -> MetaAction:
-    """Return a request with the window it may use; where its stroke is judged, the moment it is wanted at."""
+    """Return a request as a meta action with the window it may use; if its stroke is judged, with the moment
+    of the stroke.
+    """
     if request.late is not None and request.stroke is not None:
         return MetaAction(request, request.stroke, request.stroke + FITS)
     length = WINDOW if request.duration is None else max(0.0, request.duration)
@@ -186,8 +186,8 @@ def meta_of(request: MetaRequest) -> MetaAction:
 
 
 def _begin(graph: MetaGraph, old: LayerPlan, stance: str | None) -> str:
-    """Return the stance a layer begins in: as it did before, as asked, the graph's start, or the first that
-    has a loop; "" for none.
+    """Return the stance in which a layer begins: that of the plan before, the given one, the graph's start,
+    or the first that has a loop; "" for none.
     """
     wishes = [old.past.stance]
     if len(old.rests) > 0:

@@ -1,9 +1,10 @@
-"""The Markov model that performs when nobody asks for anything: a first-order chain over (limb, kind).
+"""The Markov model that performs when there are no requests: a first-order chain over (limb, kind).
 
 The arms matrix is the paper's (Borer et al., figure 11), learned from annotated casual conversation. Body and
 head have no published matrix; theirs are ours, shaped on the paper's labels: the head nods and now and then
-changes its tilt, the body mostly rests, shifts and fidgets. So are the shares of what is performed while one
-is said to idle, listen or talk: hands gesture with one's own speech, the head nods at the other's.
+changes its tilt, the body mostly rests, shifts and fidgets. The shares of what is performed in the modes
+idle, listening and talking are ours, too: the hands gesture with the character's own speech, and the head
+nods at the other's.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ def _states(text: str) -> tuple[tuple[Limb, Kind], ...]:
 
 
 def _rows(text: str) -> tuple[tuple[float, ...], ...]:
-    """Read percentages; rounding in print is evened out so that each row sums to 1."""
+    """Read percentages; each row is scaled to sum to 1, because the printed numbers are rounded."""
     rows = [[float(x) for x in line.split()] for line in text.strip().splitlines()]
     return tuple(tuple(x / sum(row) for x in row) for row in rows)
 
@@ -86,12 +87,12 @@ def write(
     the first one left out.
 
     Rests are log-normal about the mean gap (`rest_length`): most are short, some long, as people's are.
-    Windows are as `length` says.
-    kinds: what the graph has; states of other kinds are passed over, so that half-filled graphs perform too.
+    Windows are as `length` says. kinds: those that the graph has; states of other kinds are passed over, so
+    that half-filled graphs perform, too.
 
-    Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a
-    cursor gives bit for bit what writing in one go does. A chain that cannot leave a row of zeros starts
-    again from any state.
+    Each draw is keyed by the meta action's number. So a longer horizon only appends, and continuing from a
+    cursor gives bit for bit the same as writing in one go. After a row of zeros, the chain starts again from
+    any state.
     """
     number, state, time = cursor.number, cursor.state, cursor.time
     open_to = [1.0 if kinds is None or kind in kinds else 0.0 for _, kind in chain.states]
@@ -125,8 +126,8 @@ def write(
 
 
 def _row(chain: Markov, state: int, open_to: Sequence[float]) -> dict[str, float]:
-    """Return how likely each state is that may come after a state (-1: before the first), by its place; any
-    that may be where nothing leads on.
+    """Return the probability of each state that may follow a state (-1: before the first), by its index; of
+    all allowed states if none may follow.
     """
     row = list(open_to)
     if 0 <= state < len(row):
@@ -137,8 +138,8 @@ def _row(chain: Markov, state: int, open_to: Sequence[float]) -> dict[str, float
 
 
 def performs(chain: Markov, seed: Bits, meta: MetaAction, mode: Mode) -> bool:
-    """Whether something the model wrote is performed while somebody idles, listens or talks (`Markov.modes`).
-    What is left out leaves the rest as it was, so that it does not matter when a mode became known.
+    """Return whether something that the model wrote is performed in a mode (`Markov.modes`). What is left out
+    does not change the rest, so it does not matter when a mode became known.
     """
     if len(chain.modes) == 0 or meta.request.kind not in KINDS:
         return True
@@ -149,7 +150,7 @@ def performs(chain: Markov, seed: Bits, meta: MetaAction, mode: Mode) -> bool:
 
 
 def length(chain: Markov, state: int, key: Bits) -> float:
-    """Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths;
+    """Return how many seconds a meta action of a key lasts: uniform from 1 to 3 if the model has no lengths;
     else log-normal with the state's mean and standard deviation.
     """
     if len(chain.lengths) == 0:

@@ -1,4 +1,4 @@
-"""What asks mean: requests of the layers, and what lasts (Borer et al., section 6 and figure 5)."""
+"""The meaning of asks: requests of the layers, and lasting items (Borer et al., section 6 and figure 5)."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ FOREVER = 1e9  # seconds; a look that lasts until the next
 
 @dataclass(frozen=True, slots=True)
 class PlainAsk:
-    """An ask with every field that any has; `do` says which count. line: id; said: that line, None where
-    there is none such. text: what is said, or a block of BML. timing: when its words and shapes come.
+    """An ask with the fields of all kinds of asks; `do` says which of them count. line: id; said: that line,
+    None if there is none. text: the words, or a block of BML. timing: the times of its words and shapes.
     """
 
     do: str
@@ -64,8 +64,8 @@ class PlainAsk:
 
 @dataclass(frozen=True, slots=True)
 class SaidLine:
-    """A line of dialogue. seconds: how long it is, None where nobody knows. asks: what it asks for while it
-    is said, in seconds from its start. valence, arousal, intensity: of the mood it is said in.
+    """A line of dialogue. seconds: its length, None if unknown. asks: its own requests, in seconds from its
+    start. valence, arousal, intensity: of the mood it is said in.
     """
 
     text: str = ""
@@ -78,7 +78,7 @@ class SaidLine:
 
 @dataclass(frozen=True, slots=True)
 class AskedBlock:
-    """A block of BML that is asked for: what it says becomes asks `<id>.1`, `<id>.2`, ..."""
+    """A requested block of BML: its behaviours become asks `<id>.1`, `<id>.2`, ..."""
 
     id: str
     at: float
@@ -88,8 +88,8 @@ class AskedBlock:
 
 @dataclass(frozen=True, slots=True)
 class SteeringAsk:
-    """What an ask does to what is said. do: "interrupt", "pause", "resume" or "finish". what: the id of what
-    is said, "" for all of it.
+    """An ask that steers speech. do: "interrupt", "pause", "resume" or "finish". what: the id of the speech,
+    "" for all speech.
     """
 
     do: str
@@ -100,10 +100,10 @@ class SteeringAsk:
 
 @dataclass
 class Meaning:
-    """What asks mean, so far. graphs: of the layers, in their order. withdrawn: ids taken back; every one
-    where it holds "". steered: what is done to what is said, in turn. unknown: what an ask names that is not
-    there: "action", "stance" or "line". Speeches may overlap. fixed: seconds before which no gesture can
-    begin that a line asks for, though the line itself may.
+    """The meaning of asks, so far. graphs: of the layers, in their order. withdrawn: ids taken back; ""
+    stands for all. steered: the asks that steer speech, in order. unknown: the kind of thing that an ask
+    names and that does not exist: "action", "stance" or "line". Speeches may overlap. fixed: the earliest
+    second at which a gesture of a line can begin; the line itself may begin earlier.
     """
 
     project: Project
@@ -125,14 +125,14 @@ class Meaning:
     fixed: float = 0.0
 
     def track(self) -> Track:
-        """Return what lasts."""
+        """Return the track of lasting items."""
         return Track(
             tuple(self.looks), tuple(self.speeches), tuple(self.modes), tuple(self.places),
             tuple(self.blinks), tuple(self.stays), tuple(self.moods),
         )  # fmt: skip
 
     def take(self, other: Meaning) -> None:
-        """Take what others mean, too."""
+        """Add the meaning of other asks."""
         self.requests += other.requests
         self.looks += other.looks
         self.speeches += other.speeches
@@ -147,7 +147,7 @@ class Meaning:
             self.withdrawn.add(ident)
 
     def refuse(self, ident: str, why: str, layer: Layer | None, at: float) -> None:
-        """Tell that an ask was not understood."""
+        """Report that an ask was not understood."""
         self.refused.append(Report(ident, "not-understood", why, "arms" if layer is None else layer, at))
 
     def graph_of(self, layer: Layer) -> MetaGraph:
@@ -155,8 +155,8 @@ class Meaning:
         return next(graph for graph in self.graphs if graph.layer == layer)
 
     def add(self, ask: PlainAsk, ident: str, at: float, priority: int, shift: float) -> str:
-        """Add what an ask means; return why it can mean nothing, "" where it does. ident, at, priority: its
-        own, or what the line has made of them that asks for it. shift: seconds that line begins at, else 0.
+        """Add the meaning of an ask; return why it has none, "" if it has one. ident, at, priority: its own,
+        or as the line changed them that it belongs to. shift: the second at which that line begins, else 0.
         """
         where = "" if ask.layer is None else f" in the {ask.layer} layer"
         stroke = None if ask.stroke is None else ask.stroke + shift
@@ -231,8 +231,8 @@ class Meaning:
         return ""
 
     def head(self, ask: PlainAsk, ident: str, at: float, priority: int) -> str:
-        """Nods are gestures tagged so; where none is, the likeliest of those called so, whatever stance it
-        needs.
+        """Nods are gestures with that tag; if there is none, the likeliest one with that name, whatever
+        stance it needs.
         """
         gestures = [
             x
@@ -266,7 +266,7 @@ class Meaning:
         return ""
 
     def say(self, ask: PlainAsk, ident: str, at: float, priority: int) -> str:
-        """Something said: a line, with what it asks for meanwhile, or other words."""
+        """Say a line, with its own requests, or other words."""
         line = ask.said
         if ask.line is not None and line is None:
             self.unknown = "line"
@@ -313,8 +313,8 @@ class Meaning:
 
 
 def understood(whole: Meaning, ask: PlainAsk, now: float, soon: float) -> None:
-    """Take what an ask means, or refuse all of it. now: when it begins where it does not say; soon: when it
-    is said, likewise.
+    """Add the meaning of an ask, or refuse all of it. now: when it begins if it does not say; soon: the same
+    for speech.
     """
     one = Meaning(whole.project, whole.graphs, whole.alphabet, fixed=now)
     at = (soon if ask.do == "say" else now) if ask.at is None else ask.at

@@ -2,17 +2,17 @@
 breath, blinks, gaze, posture and face.
 
 A mood is a point in Russell's circumplex (1980): valence, how pleasant, and arousal, how excited, both -1..1;
-beside it an intensity, 0..2, 1 as made. Neutral (0, 0, 1) changes nothing, to the last digit: every factor
-is 1 and every offset 0 there.
+with it, an intensity, 0..2; 1 is normal. Neutral (0, 0, 1) changes nothing, to the last digit: every factor
+is 1 and every offset is 0.
 
 What is known and followed here: arousal goes with the speed, acceleration and jerk of movements (Pollick et
 al. 2001, of arms that knock and drink); elated joy and hot anger are expansive and full of movement, sadness
 and boredom neither (Wallbott 1998); the sad walk slowly, with small movements and bowed heads (Roether et al.
 2009). Anger and fear lie close together here, at 99 and 116 degrees; people tell them apart by power
-(Fontaine et al. 2007). So of unpleasant excitement the milder is anger here, the stronger fear: it draws back
-(Coulson 2004), the shoulders up and the arms close. Faces follow the prototypes of FACS (Ekman and Friesen
-1978): fear 1+2+4+5+20, anger 4+5+7+23, joy 6+12, sadness 1+4+15. By how much - the numbers below - is ours,
-chosen so that every clip still looks as if it was made so.
+(Fontaine et al. 2007). So here, mild unpleasant excitement is anger and strong unpleasant excitement is fear:
+the body draws back (Coulson 2004), with the shoulders up and the arms close. Faces follow the prototypes of
+FACS (Ekman and Friesen 1978): fear 1+2+4+5+20, anger 4+5+7+23, joy 6+12, sadness 1+4+15. The amounts (the
+numbers below) are ours, chosen so that every clip still looks natural.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ MOODS: dict[str, tuple[float, float]] = {
 
 @dataclass(frozen=True, slots=True)
 class Mood:
-    """valence, arousal: -1..1. intensity: 0..2, 1 as made."""
+    """valence, arousal: -1..1. intensity: 0..2, 1 is normal."""
 
     valence: float = 0.0
     arousal: float = 0.0
@@ -81,8 +81,8 @@ class Mood:
 
 @dataclass(frozen=True, slots=True)
 class MoodFrom:
-    """A mood told from `start` on, until `end`; what it leaves out stays as it would be without it. Of two
-    that last the later began counts, and the other again when that is over.
+    """A mood that holds from `start` until `end`; a field that it leaves out stays as it is without it. If
+    two hold at once, the one that began later counts. When it is over, the other counts again.
     """
 
     id: str
@@ -95,7 +95,7 @@ class MoodFrom:
 
 @dataclass(frozen=True)
 class Moods:
-    """The mood over time. base: where nothing is told; told: by start."""
+    """The mood over time. base: the mood where no other holds; told: the others, by start."""
 
     base: Mood = Mood()
     told: Sequence[MoodFrom] = ()
@@ -103,7 +103,7 @@ class Moods:
 
 @dataclass(frozen=True, slots=True)
 class LifeMood:
-    """What a mood makes of the life layers' amounts and rates: factors, as those of a manner."""
+    """The factors by which a mood changes the amounts and rates of the life layers, as those of a manner."""
 
     breathing: float
     breath_rate: float
@@ -116,7 +116,7 @@ class LifeMood:
 class Bearing:
     """Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids:
     how far they hang, 0..1, or are open wide, below 0. smile, frown, brow_down, brow_up, brows: weights of
-    the face, 0..1. thrust: how far the body leans into it, 0..1, or draws back, below 0. tension: of
+    the face, 0..1. thrust: how far the body leans forward, 0..1, or draws back, below 0. tension: of
     shoulders, arms and hands, 0..1. closed: how close the arms are kept, 0..1.
     """
 
@@ -134,7 +134,7 @@ class Bearing:
 
 
 def changed(mood: Mood, valence: float | None, arousal: float | None, intensity: float | None) -> Mood:
-    """Return a mood with what is told of it changed, each within its range."""
+    """Return a mood with the given fields changed, each limited to its range."""
     return Mood(
         mood.valence if valence is None else within(valence, -1.0, 1.0),
         mood.arousal if arousal is None else within(arousal, -1.0, 1.0),
@@ -143,7 +143,7 @@ def changed(mood: Mood, valence: float | None, arousal: float | None, intensity:
 
 
 def mood_at(moods: Moods, seconds: float) -> Mood:
-    """Return the mood wanted at a time; posture and face take a while to follow (`shown`)."""
+    """Return the mood that holds at a time; posture and face follow it slowly (`shown`)."""
     out = moods.base
     for told in moods.told:
         if told.start > seconds:
@@ -154,8 +154,8 @@ def mood_at(moods: Moods, seconds: float) -> Mood:
 
 
 def lasting(told: Sequence[MoodFrom], seconds: float) -> list[MoodFrom]:
-    """Return those that may still show at `seconds` or later: not what is over and has faded, nor what
-    another that lasts for ever has replaced.
+    """Return the moods that may still show at `seconds` or later: without those that are over and have faded,
+    and without those that a mood without an end has replaced.
     """
     out: list[MoodFrom] = []
     for place, one in enumerate(told):
@@ -195,7 +195,7 @@ def faded(x: float) -> float:
 
 
 def shown(starts: Sequence[float], values: Sequence[Sequence[float]], seconds: float) -> Mood:
-    """Return the mood that shows at a time, on its way from those before. starts: when each begins,
+    """Return the mood that shows at a time, while it fades from the previous ones. starts: when each begins,
     ascending; values: valence, arousal, intensity of each. Before the first it is the first.
     """
     place = len(starts) - 1
@@ -228,8 +228,8 @@ def leaning(x: float, most: float) -> float:
 
 
 def liveliness(mood: Mood) -> float:
-    """Return how lively a mood makes somebody, -1..1: as much as it arouses, more where it is pleasant, less
-    where it is unpleasant and does not excite.
+    """Return how lively a mood is, -1..1: its arousal, plus some if it is pleasant, less if it is unpleasant
+    and not exciting.
     """
     well, ill = max(0.0, mood.valence), max(0.0, -mood.valence)
     calm = 1 - max(0.0, mood.arousal)
@@ -267,20 +267,22 @@ def tempo(mood: Mood) -> float:
 
 
 def drag(seconds: float, speed: float) -> float:
-    """Return how much longer clip seconds take at a speed than at their own, 0 at that, to the last digit."""
+    """Return how much longer clip seconds take at a speed than at their own speed, exactly 0 at
+    that speed.
+    """
     return seconds * (1 / speed - 1)
 
 
 def turn_extent(extent: float, real: float) -> float:
     """Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of
-    the turn as it was made, a unit quaternion: turns of nearly half a circle, whose short way changes sides,
-    stay as they are.
+    the original rotation, a unit quaternion. Rotations of nearly half a circle, whose short way changes
+    sides, stay as they are.
     """
     return 1 + (extent - 1) * faded((abs(real) - 0.1) / 0.4)
 
 
 def made_for(mood: Mood, tags: Sequence[str]) -> bool:
-    """Whether an action was made for a mood: tagged with one that is near."""
+    """Return whether an action was made for a mood: whether it has the tag of a mood that is near."""
     return any(tag in MOODS and distance(mood, tag) <= CLOSE for tag in tags)
 
 
@@ -293,9 +295,9 @@ def distance(mood: Mood, name: str) -> float:
 
 
 def favour(mood: Mood, tags: Sequence[str], vigour: float) -> float:
-    """Return how much likelier than usual an action is. vigour: how energetic it is beside others of its
-    layer and kind, -1..1. Up to 4 times for that, 4 for a tag of valence, 9 for a tag that names a mood; and
-    as much rarer where they are against it.
+    """Return the factor of an action's likelihood. vigour: how energetic it is compared with others of its
+    layer and kind, -1..1. The factor is up to 4 for vigour, 4 for a tag of valence and 9 for a tag that names
+    a mood, and the inverse if they contradict the mood.
     """
     out = leaning(vigour * within(liveliness(mood) + (mood.intensity - 1), -1.0, 1.0), 4.0)
     if PLEASANT in tags:
@@ -310,16 +312,17 @@ def favour(mood: Mood, tags: Sequence[str], vigour: float) -> float:
 
 
 def stirs(mood: Mood, seed: Bits, key: str) -> bool:
-    """Whether something a model wrote is performed in a mood: the less lively, the less of it, down to
-    0.6.
+    """Return whether something that a model wrote is performed in a mood: less of it in a less lively mood,
+    down to 0.6.
     """
     lively = liveliness(mood)
     return lively >= 0 or uniform(seed, key, "mood") < 1 + 0.4 * lively
 
 
 def life_of(mood: Mood) -> LifeMood:
-    """Return what a mood makes of the life layers. Breath quickens and deepens with arousal, eyes dart and
-    blink more; who feels bad looks away more, who feels well less. The amounts are ours.
+    """Return how a mood changes the life layers. With arousal, breath is quicker and deeper, and eyes dart
+    and blink more. In an unpleasant mood the character looks away more, in a pleasant one less. The amounts
+    are ours.
     """
     a, v = mood.arousal, mood.valence
     return LifeMood(
@@ -333,7 +336,7 @@ def life_of(mood: Mood) -> LifeMood:
 
 def bearing(mood: Mood) -> Bearing:
     """Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et
-    al. 2009); shoulders rise, fists close and the body goes ahead with arousal that is not joy; fear draws
+    al. 2009); shoulders rise, fists close and the body leans forward with arousal that is not joy; fear draws
     back (Coulson 2004); the amounts are ours.
     """
     v, a, i = mood.valence, mood.arousal, mood.intensity

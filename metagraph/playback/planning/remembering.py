@@ -1,4 +1,4 @@
-"""What is remembered of what was played: how often an action was, lately, and until when."""
+"""What the planner remembers of played actions: how often each played lately, and until when."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ REMEMBERED = 32  # draws of a stance and kind that spacing can look back on
 
 
 def node(stance: str, kind: str) -> str:
-    """Return what draws of a stance and kind are remembered under."""
+    """Return the key under which draws of a stance and kind are remembered."""
     return f"{kind} {stance}"
 
 
 def rested(recent: Sequence[str], ident: str, needed: int) -> bool:
-    """Whether so many other draws came after an action's last one."""
+    """Return whether at least this many other draws came after an action's last one."""
     if needed <= 0:
         return True
     return needed <= REMEMBERED and ident not in recent[max(0, len(recent) - needed) :]
@@ -24,7 +24,7 @@ def rested(recent: Sequence[str], ident: str, needed: int) -> bool:
 def remember(
     cue: Cue, uses: dict[str, int], recent: dict[str, tuple[str, ...]], ended: dict[str, float]
 ) -> None:
-    """Note that a cue was played: how often its action was, lately, and until when."""
+    """Note that a cue was played: count its action, and note when it ended."""
     ident = cue.action.id
     place = node(cue.stance, cue.action.kind)
     uses[ident] = uses.get(ident, 0) + 1

@@ -1,9 +1,9 @@
 """Temporal replanning: meta actions that may clash become a meta plan that does not (Borer et al., section
 6.1).
 
-Greedy, by start time and then priority. The running action is never touched. Where two overlap, the more
-important one keeps its time; the other is delayed past it, or cut where it begins, and then goes on with its
-remainder if it asked to.
+Greedy, by start time and then priority. The running action is never touched. If two overlap, the more
+important one keeps its time. The other is delayed past it, or cut where it begins; its remainder then plays
+afterwards if the request says so.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from metagraph.playback.plan import MetaAction, Outcome, Report
 def delay(
     asked: Iterable[MetaAction], free: float, settings: Settings
 ) -> tuple[list[MetaAction], list[Report]]:
-    """Let new requests wait until `free` seconds, the end of the running action; what would wait too long is
-    past. Those that say how late they may be are judged where it shows how late they are.
+    """Let new requests wait until `free` seconds, the end of the running action, and drop those that would
+    wait too long. Requests that say how late they may be are judged later, when their lateness is known.
     """
     metas: list[MetaAction] = []
     reports: list[Report] = []
@@ -47,9 +47,9 @@ def replan(
 ) -> tuple[list[MetaAction], list[Report]]:
     """Return the meta plan, ascending and without overlaps, and what became of the rest.
 
-    What is asked for is placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta
-    actions that do not overlap come back as they are, so a plan that is placed again stays as it is. Of equal
-    start and priority, the id that sorts first goes first.
+    Requests are placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions
+    that do not overlap stay as they are, so a plan that is placed again does not change. If start and
+    priority are equal, the id that sorts first goes first.
     """
     every = list(metas)
     placed, reports = _placed([m for m in every if not m.written], settings)
@@ -60,8 +60,8 @@ def replan(
 def _fitted(
     written: Iterable[MetaAction], placed: Sequence[MetaAction], shortest: float, busy: float
 ) -> tuple[list[MetaAction], list[Report]]:
-    """Return what is left of what a model wrote beside what is placed: the first stretch of each that is long
-    enough.
+    """Return the parts of written meta actions that fit beside the placed ones: the first stretch of each
+    that is long enough.
     """
     out: list[MetaAction] = []
     reports: list[Report] = []
@@ -98,7 +98,7 @@ def _fitted(
 
 
 def _order(meta: MetaAction) -> tuple[float, int, str, int]:
-    """Return what decides who is placed first."""
+    """Return the sort key that decides which is placed first."""
     return meta.start, -meta.request.priority, meta.request.id, meta.part
 
 
@@ -145,7 +145,7 @@ def _placed(metas: Sequence[MetaAction], settings: Settings) -> tuple[list[MetaA
 
 
 def _after(meta: MetaAction, free: float) -> MetaAction:
-    """Return a meta action from `free` on."""
+    """Return a meta action that begins at `free` instead."""
     return replace(meta, start=free, end=free + (meta.end - meta.start))
 
 

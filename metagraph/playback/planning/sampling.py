@@ -57,13 +57,15 @@ from metagraph.playback.planning.vigour import measure_vigour
 from metagraph.playback.timing.phase_times import LEAST_BLEND
 from metagraph.playback.timing.phases import find_phases
 
-ON_TIME = 0.1  # seconds by which what is asked for may begin later than that, and is on time
+ON_TIME = 0.1  # seconds by which a request may begin later and still be on time
 LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
 
 
 @dataclass(frozen=True, slots=True)
 class SamplingStep:
-    """One action of a chain: who may play it, and for a transition on the way the stance it leads to."""
+    """One action of a chain: the candidates for it and, for a transition on the way, the stance
+    it leads to.
+    """
 
     candidates: Sequence[Action]
     hop: str = ""
@@ -71,12 +73,12 @@ class SamplingStep:
 
 @dataclass
 class Performer:
-    """One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
+    """One layer being planned, cue after cue. It changes while planning, and never leaves the planner.
 
     uses: how often each action was used. recent: the last draws of each `node`. ended: when each action
-    ended. begun: keys of meta actions whose chain of transitions plays already. served: keys of those that
-    another's action serves, too. moods: what it is in the mood for, and when. candidates: the actions of each
-    `node` that may be drawn, as far as they were asked for. acted: when the last action ended.
+    ended. begun: keys of meta actions whose chain of transitions already plays. served: keys of those that
+    the action of another one serves, too. moods: the mood over time. candidates: the actions of each `node`
+    that may be drawn, for the nodes needed so far. acted: when the last action ended.
     """
 
     project: Project
@@ -97,14 +99,14 @@ class Performer:
     candidates: dict[str, list[Action]] = field(default_factory=dict)
 
     def note(self, cue: Cue, then: str) -> None:
-        """Take a cue as played."""
+        """Note that a cue is played."""
         self.cues.append(cue)
         self.free, self.acted, self.stance = cue.end, cue.end, then
         remember(cue, self.uses, self.recent, self.ended)
 
     @property
     def ready(self) -> float:
-        """When the next action may begin at the earliest."""
+        """The earliest time at which the next action may begin."""
         return self.free + (self.project.settings.rest if self.ended else 0.0)
 
     def begin(self, stance: str) -> bool:
@@ -116,7 +118,7 @@ class Performer:
         return True
 
     def perform(self, metas: Sequence[MetaAction], end: float) -> None:
-        """Realise what starts before `end` of a conflict-free meta plan, in order."""
+        """Realise in order those meta actions of a conflict-free meta plan that start before `end`."""
         for bound in bounds(metas):
             meta = bound.meta
             if begins(meta) >= end:
@@ -195,8 +197,8 @@ class Performer:
             self._keep(one)
 
     def _timely(self, bound: Bound, fitting: Sequence[Action], now: float) -> list[Action]:
-        """Return those that come least late, if that is not too late; of them those that leave most of what
-        follows its time, and serve most of it.
+        """Return the candidates that come least late, if that is not too late; among them those that leave
+        the following requests the most time and serve the most of them.
         """
         meta = bound.meta
         request = meta.request
@@ -240,7 +242,7 @@ class Performer:
         return timely
 
     def _cause(self, request: MetaRequest, now: float) -> str:
-        """Return what a request that comes late waits for."""
+        """Return the reason why a request comes late."""
         if now <= request.start + FITS:
             return "its own preparation"
         if len(self.cues) > 0 and self.ready >= now - FITS and self.cues[-1].end >= self.free - FITS:
@@ -248,8 +250,8 @@ class Performer:
         return "what comes before it" if len(self.cues) > 0 else "the time it became known at"
 
     def _latest(self, request: MetaRequest) -> float:
-        """Return when something that is asked for has to begin at the latest, to be on time; never in the
-        past, where nothing meets it.
+        """Return the latest time at which a requested action has to begin to be on time; never in
+        the past.
         """
         if request.stroke is None:
             return request.start
@@ -266,13 +268,13 @@ class Performer:
         return request.stroke - least
 
     def _over(self, action: Action, request: MetaRequest, now: float) -> float:
-        """Return when what follows an action could begin at the earliest."""
+        """Return the earliest time at which the next action could begin after this one."""
         shape = self._shape(action, request, now, self._mood(request, now))
         return shape.start + hurried(self.project, action, shape) + self.project.settings.rest - FITS
 
     def _until(self, action: Action, shape: CueShape, bound: Bound) -> float:
-        """Return when an action that is to be played through is left nevertheless: early enough for the first
-        of what follows that can be in time then, late enough for its own stroke; infinity for never.
+        """Return when an action that should play to its end is left early all the same: early enough for the
+        first following request that can then be in time, late enough for its own stroke; infinity for never.
         """
         if len(bound.after) == 0:
             return float("inf")
@@ -287,9 +289,9 @@ class Performer:
     def make_way(
         self, running: MetaAction | None, asked: Sequence[MetaAction], now: float, stopped: bool
     ) -> None:
-        """Leave the running action early for the first of what is asked for that can be in time then, and
-        where it was `stopped` in any case. What a model wrote, or is less important, is left at once, the
-        rest where its retraction begins.
+        """Leave the running action early for the first request that can then be in time, or if it was
+        `stopped`. An action that a model wrote, or that is less important, is left at once; others are left
+        where their retraction begins.
         """
         if stopped:
             self.retract(now)
@@ -325,8 +327,8 @@ class Performer:
             return
 
     def retract(self, now: float) -> None:
-        """Leave the running action: it goes back to its stance from where it is. A transition ends where it
-        leads.
+        """Leave the running action: it returns to its stance from where it is. A transition ends in the
+        stance it leads to.
         """
         cue = self.cues[-1]
         end = now + STOPPED
@@ -337,14 +339,14 @@ class Performer:
         self.ended[cue.action.id] = end
 
     def _cooled(self, action: Action) -> float:
-        """Return when an action may be drawn again."""
+        """Return the time from which an action may be drawn again."""
         if action.cooldown > 0 and action.id in self.ended:
             return self.ended[action.id] + action.cooldown
         return float("-inf")
 
     def _steps(self, meta: MetaAction, now: float) -> list[SamplingStep] | None:
-        """Return each action in turn: the transitions to get there, then the action itself; None if
-        impossible or needless, or where the model wrote it and nothing is rested enough.
+        """Return each action in turn: the transitions to get there, then the action itself; None if it is
+        impossible or not needed, or if the model wrote it and every candidate played too recently.
         """
         request = meta.request
         graph = self.graph
@@ -446,7 +448,7 @@ class Performer:
 
     def _chain(self, goal: str) -> list[str]:
         """Return the stances after the current one on the shortest way of transitions that can play, the goal
-        last; none where there is no way. Among equally short ones that whose transitions were placed first.
+        last; empty if there is no way. Among equally short ways, the one whose transitions were placed first.
         """
         before = {self.stance: ""}
         queue = [self.stance]
@@ -471,7 +473,7 @@ class Performer:
         return list(reversed(way))
 
     def _arrives(self, action: Action) -> bool:
-        """Whether an action leaves the layer in a stance that can rest."""
+        """Return whether an action leaves the layer in a stance that has a loop."""
         end = action.end_stance
         if action.kind != "transition":
             return True
@@ -485,7 +487,7 @@ class Performer:
         return shape_of(self.project, action, request, now, self._tempo(action, mood))
 
     def _mood(self, request: MetaRequest | None, at: float) -> Mood:
-        """Return the mood that something asked for is played in from `at` on, or at its stroke."""
+        """Return the mood in which a request is played from `at` on, or at its stroke."""
         if request is None:
             return mood_at(self.moods, at)
         mood = mood_at(self.moods, at if request.stroke is None else request.stroke)
@@ -494,12 +496,12 @@ class Performer:
         return changed(mood, request.valence, request.arousal, request.intensity)
 
     def _tempo(self, action: Action, mood: Mood) -> float:
-        """Return how fast an action is played, 1 where it was made for the mood."""
+        """Return the speed of an action in a mood, 1 if it was made for the mood."""
         return 1.0 if mood.neutral or made_for(mood, action.tags) else tempo(mood)
 
     def _extent(self, action: Action, mood: Mood) -> float:
-        """Return how large an action is played. Those that move feet or leave for another stance, touch
-        something or were made for the mood are played as they were made.
+        """Return the extent of an action in a mood. Actions that move the feet, lead to another stance, touch
+        something or were made for the mood keep their extent.
         """
         if self.graph.layer == "body" or action.kind == "transition" or mood.neutral:
             return 1.0
@@ -510,8 +512,8 @@ class Performer:
         )
 
     def _draw(self, candidates: list[Action], key: str, now: float, mood: Mood) -> Action:
-        """Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood and variety favour, leaving out
-        those used too recently as long as any others are left.
+        """Draw with p_k ~ likelihood_k / max(c_k, 1), times the factors of mood and variety. Actions used too
+        recently are left out as long as others are left.
         """
         left = self._spaced(candidates)
         if len(left) == 1:
@@ -528,7 +530,7 @@ class Performer:
         return next(a for a in left if a.id == chosen)
 
     def _variety(self, action: Action, now: float) -> float:
-        """Return how much likelier variety makes an action."""
+        """Return the factor by which variety changes an action's likelihood."""
         variety = self.project.settings.variety
         if variety <= 0 or action.kind == "transition" or action.id not in self.ended:
             return 1.0
@@ -536,7 +538,7 @@ class Performer:
         return freshness(now - self.ended[action.id], needed)
 
     def _fresh(self, meta: MetaAction, candidates: Sequence[Action], now: float) -> list[Action]:
-        """Return those that may be done of one's own accord; see `director`."""
+        """Return the actions that the character may do by itself; see `director`."""
         variety = self.project.settings.variety
         layer = self.graph.layer
         if meta.request.kind == "transition":
@@ -572,7 +574,7 @@ class Performer:
         return latest
 
     def _shown(self, since: float) -> bool:
-        """Return whether something that stands out was done since a time."""
+        """Return whether an act that stands out was done since a time."""
         for ident, end in self.ended.items():
             action = self.graph.actions.get(ident)
             if action is None or action.kind == "transition" or end < since:
@@ -582,7 +584,7 @@ class Performer:
         return False
 
     def _spaced(self, candidates: list[Action]) -> list[Action]:
-        """Leave out what needs more other actions before it plays again; where that leaves nothing, all need
+        """Leave out actions that need more other actions before they play again. If nothing is left, all need
         one less, and so on.
         """
         default = 1 if self.project.settings.never_twice else 0
@@ -612,7 +614,7 @@ class Performer:
         return alpha * used
 
     def _cue(self, action: Action, shape: CueShape, bound: Bound, hops: bool, stance: str, mood: Mood) -> Cue:
-        """hops: whether it is a transition on the way to what is asked for."""
+        """hops: whether it is a transition on the way to the requested action."""
         length = shape.length
         into = max(0.0, action.timing.blend_in)
         out = max(0.0, action.timing.blend_out)
@@ -643,9 +645,9 @@ class Performer:
         self.note(cue, cue.then)
         loop = self.loop(cue.then, cue.meta)
         if loop is not None:
-            # The loop begins anew under the action, so that the action's last pose meets the loop's first.
-            # Where the action leaves joints alone the change shows, and takes its time: a transition all of
-            # its own.
+            # The loop begins again under the action, so that the action's last pose meets the loop's first.
+            # On joints that the action does not move, the change shows. It takes its time there, like a
+            # transition.
             partial = (
                 cue.action.limb != "both" or len(cue.action.joints) > 0 or len(cue.action.joint_weights) > 0
             )
@@ -658,7 +660,7 @@ class Performer:
             self.rests.append(Rest(cue.then, loop, until, begin, fade))
 
     def loop(self, stance: str, key: str) -> Action | None:
-        """Return one of a stance's loops, drawn by likelihood; None where it has none."""
+        """Return one of a stance's loops, drawn by likelihood; None if it has none."""
         loops = self.graph.of(stance, "stance")
         if len(loops) == 1:
             return loops[0]
@@ -669,7 +671,7 @@ class Performer:
         return next(a for a in loops if a.id == chosen)
 
     def vary_rests(self, end: float) -> None:
-        """Where a stance has several loops, change between them in long rests, at a loop's end."""
+        """Change between the loops of a stance in long rests, at the end of a loop."""
         out: list[Rest] = []
         for place, rest in enumerate(self.rests):
             out.append(rest)
@@ -707,7 +709,7 @@ class Performer:
 def performer_after(
     project: Project, graph: MetaGraph, seed: Bits, begin: str, past: Past, cues: Sequence[Cue], moods: Moods
 ) -> Performer:
-    """Return the performer that stands where cues have been played after a past."""
+    """Return the performer as it is after a past and the cues that played since."""
     stance = past.stance if past.stance in graph.stances else begin
     out = Performer(
         project, graph, seed, stance, moods, past.free, past.free,

@@ -1,5 +1,5 @@
-"""Find where contacts want the hands at a time: those of the cue that plays and of the loops under it, each
-by how much of it shows.
+"""Find the goals that contacts set for the hands at a time: contacts of the cue that plays and of the loops
+under it, each weighted by how much of it shows.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def layer_goals(
     time: float,
     strength: float,
 ) -> list[HandGoal]:
-    """Return where a layer wants the hands at a time.
+    """Return a layer's goals for the hands at a time.
 
     `cue` is the one that plays, if it has motion. `place` is the index of the rest in force, -1 for none.
     `strength` is how much of the arms the layer moves, 0..1.
@@ -39,7 +39,7 @@ def layer_goals(
                 shown[arm] = weight
         if len(cue.action.contacts) > 0:
             left = seam_left(cue, time)
-            if left > 0.0:  # what the cycle before wanted at its end, as far as its pose is still shown
+            if left > 0.0:  # the goals at the end of the previous cycle, as far as its pose still shows
                 out += _goals(rig, project, cue.action, cue.cycle_to, [strength * left * w for w in shown])
             share = strength * (1.0 - left)
             out += _goals(rig, project, cue.action, cue_seconds(cue, time), [share * w for w in shown])
@@ -61,7 +61,7 @@ def _loop_goals(
     strength: float,
     shown: Sequence[float],
 ) -> list[HandGoal]:
-    """Return where a loop wants the hands, less what the cue above it covers."""
+    """Return a loop's goals for the hands, reduced by the cue above it."""
     out: list[HandGoal] = []
     action = rest.action
     if len(action.contacts) == 0:

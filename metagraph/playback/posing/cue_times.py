@@ -1,4 +1,4 @@
-"""Compute what of a cue, or of a stance's loop, shows at a time, with plain numbers. `player` and
+"""Compute how much of a cue, or of a stance's loop, shows at a time, with plain numbers. `player` and
 `Cue.clip_seconds` do the same with arrays.
 """
 
@@ -69,8 +69,8 @@ def cue_seconds(cue: Cue, time: float) -> float:
 
 
 def seam_left(cue: Cue, time: float) -> float:
-    """Return how much of the way from where a cycle begins to where the one before it ended is still added at
-    a time, 0..1, so that a cue that repeats goes on without a jump.
+    """Return the share, 0..1, of the offset between the end of one cycle and the beginning of the next that
+    is still added at a time, so that a cue that repeats does not jump.
     """
     cycle = cue.cycle_to - cue.cycle_from
     into = cue.entry - cue.cycle_from + (time - cue.start) * cue.tempo

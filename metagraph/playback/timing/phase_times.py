@@ -21,7 +21,7 @@ class Phases:
     end: float
 
     def skip(self, blend_in: float) -> float:
-        """Return where a gesture begins that skips its preparation: as late as it can blend in and be
-        ready.
+        """Return where a gesture begins if it skips its preparation: as late as it can blend in
+        and be ready.
         """
         return max(self.start, self.ready - max(blend_in, LEAST_BLEND))

@@ -203,7 +203,7 @@ def score_extending(
             cases.append((driver.states, sound, said, path))
             searches += took
             told()
-        yield score_paths("heard" if k is None else f"told {k:g} s ahead", cases, searches)
+        yield score_paths("heard" if k is None else f"announced {k:g} s ahead", cases, searches)
     cases = []
     for graph, sound, said, seconds in graphs:
         cases += find_best_paths(graph, sound, said, seconds)

@@ -97,7 +97,9 @@ def read_moho(file: MouthFile) -> MouthShapes:
     rate = MOHO_RATE
     if file.sound is not None and last / rate > file.sound + 0.5:
         rate = next((r for r in _RATES if last / r <= file.sound + 0.5), rate)
-    cues.notes.append(phrase("it does not say its frames a second: {rate:g} were taken", rate=rate))
+    cues.notes.append(
+        phrase("it does not give its frame rate: {rate:g} frames a second were assumed", rate=rate)
+    )
     cues.unit = 1 / rate
     return cues.finished()
 
@@ -114,7 +116,7 @@ def read_papagayo(file: MouthFile) -> MouthShapes:
     lines = file.text.lstrip("\ufeff \n").split("\n")
     rate = parse_mouth_number(lines[2].strip()) if len(lines) > 4 else None
     if rate is None or not 1 <= rate <= 1000:
-        raise file.fail(phrase("it does not say its frames a second"), phrase("line {n}", n=3))
+        raise file.fail(phrase("it does not give its frame rate"), phrase("line {n}", n=3))
     heads = 0  # a voice begins with three lines at one tab: its name, its text, how many phrases it has
     for n, line in enumerate(lines[5:], 6):
         tabs, cells = len(line) - len(line.lstrip("\t")), line.split()
@@ -140,7 +142,7 @@ def read_papagayo_ng(file: MouthFile) -> MouthShapes:
     cues = MouthCues(file)
     rate, voices = parse_mouth_number(file.data["fps"]), file.data["voices"]
     if rate is None or not 1 <= rate <= 1000:
-        raise file.fail(phrase("it does not say its frames a second"), "'fps'")
+        raise file.fail(phrase("it does not give its frame rate"), "'fps'")
     if not isinstance(voices, list) or not voices:
         raise file.fail(phrase("it has no mouth shapes"), "'voices'")
     for n, one in enumerate(_phonemes(voices[0])):

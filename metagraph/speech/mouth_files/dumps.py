@@ -112,7 +112,7 @@ def read_viseme_json(file: MouthFile) -> MouthShapes:
             None if weights is None else [parse_mouth_number(v) if v is not None else 0.0 for v in weights]
         )
         if values is None or any(v is None for v in values):
-            raise file.fail(phrase("has not 15 numbers, one for each viseme"), where)
+            raise file.fail(phrase("does not have 15 numbers, one for each viseme"), where)
         rows[n, [VISEMES.index(OCULUS[name]) for name in ORDER]] = values
         if isinstance(entry, dict):
             at = next((parse_mouth_number(entry[k]) for k in _TIMES if k in entry), None)
@@ -142,7 +142,7 @@ def read_viseme_sequence(file: MouthFile) -> MouthShapes:
     odd = next((k for k, row in enumerate(found) if len(row) != 15), None)
     if odd is not None or len(found) > MARKS:
         raise file.fail(
-            phrase("has not 15 numbers, one for each viseme"), phrase("frame {number}", number=odd or 0)
+            phrase("does not have 15 numbers, one for each viseme"), phrase("frame {number}", number=odd or 0)
         )
     rows = np.zeros((len(found), len(VISEMES)))
     if found:
@@ -176,7 +176,7 @@ def _shapes(
         last = length if length is not None and 0 < length <= LONGEST else file.sound
         if last is None:
             last = len(rows) * BUFFER
-            notes.append(phrase("it has no times: {rate:.1f} frames a second were taken", rate=1 / BUFFER))
+            notes.append(phrase("it has no times: {rate:.1f} frames a second were assumed", rate=1 / BUFFER))
         else:
             notes.append(phrase("it has no times: its frames lie evenly over {last:.2f} s", last=last))
         at = np.arange(len(rows)) * (last / len(rows))

@@ -180,7 +180,7 @@ class MouthCues:
             known = ", ".join(SHAPE_SETS)
             raise self.file.fail(
                 phrase(
-                    "'{label}' is no mouth shape of {known}, and no phone",
+                    "'{label}' is neither a phone nor a mouth shape of {known}",
                     label=sorted(given)[0][:30],
                     known=known,
                 )

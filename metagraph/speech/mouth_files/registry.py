@@ -162,8 +162,8 @@ def read_mouth_file(path: str | Path, sound: float | None = None) -> MouthShapes
     if sound is None or found.end <= 1.25 * sound + 1.0:
         return found
     told = phrase(
-        "its shapes end at {end:.1f} s and the sound at {sound:.1f} s: it may be of another sound, or its "
-        "times in another unit",
+        "its shapes end at {end:.1f} s and the sound at {sound:.1f} s: the file may belong to "
+        "another sound, or its times may have another unit",
         end=found.end,
         sound=sound,
     )

@@ -224,13 +224,13 @@ def _refusal(project: Project, one: _Rest, other: _Rest) -> Phrase | None:
     joint, limit = course.joint, float(one.pace.limits[course.joint])
     if limit < HASTY * size:
         return phrase(
-            "{part} goes {speed:.1f} m/s, and at most {usual:.1f} m/s in the clips",
+            "{part} moves at {speed:.1f} m/s, but at most at {usual:.1f} m/s in the clips",
             part=f"'{one.pace.skeleton.names[joint]}'",
             speed=PEAK * course.hurry * limit,
             usual=PEAK * limit,
         )
     return phrase(
-        "both loops are too short: {length:.0f} cm in {seconds:.1f} s look thrown",
+        "both loops are too short: moving {length:.0f} cm in {seconds:.1f} s would look like a jolt",
         length=100 * metres,
         seconds=room,
     )

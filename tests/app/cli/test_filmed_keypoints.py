@@ -80,7 +80,7 @@ def test_what_is_no_video_is_refused_before_anything_is_installed_for_it(
     (tmp_path / "talk.mp4").write_bytes(b"not a film")
     assert main(["mimic", str(SAMPLE), str(tmp_path / "talk.mp4")]) != 0
     said = capsys.readouterr().err
-    assert "none.mp4" in said and "no video that can be read" in said and "extras" not in said
+    assert "none.mp4" in said and "not a video that can be read" in said and "extras" not in said
 
 
 @pytest.mark.parametrize("answer", ["y", "n"])

@@ -180,7 +180,7 @@ def test_whoever_is_in_no_stance_is_told_of_by_the_exit_code(
     lying = [[n * 20.0 + 1, 300.0, 0.9] for n in range(17)]
     path.write_text(json.dumps([{"keypoints": lying}] * 40))
     code, data, err = run(capsys, project, path)
-    assert code == 3 and data["seen"] == [] and "30 were taken" in err
+    assert code == 3 and data["seen"] == [] and "30 frames a second were assumed" in err
 
 
 def test_nobody_is_recorded_in_a_project_without_clips(

@@ -28,10 +28,10 @@ class Steps:
 
     def install(self, name, tell, stopped, folder):
         self.asked.append((name, folder))
-        tell(0.4, phrase("Loading {package}…", package="numba"))
+        tell(0.4, phrase("Downloading {package}…", package="numba"))
         while self.wait and not stopped():
             time.sleep(0.01)
-            tell(0.4, phrase("Loading {package}…", package="numba"))
+            tell(0.4, phrase("Downloading {package}…", package="numba"))
         if self.error is not None:
             raise self.error
         if not stopped():
@@ -101,7 +101,7 @@ def test_stop_ends_an_installation(drive, steps):
     steps.wait = True
     dialog = open_dialog(drive)
     press(dialog.install)
-    drive.wait(lambda: dialog.said.text() == "Loading numba…")
+    drive.wait(lambda: dialog.said.text() == "Downloading numba…")
     assert dialog.progress.value() == 400 and dialog.stop.isVisible() and not dialog.install.isEnabled()
     press(dialog.stop)
     drive.wait(lambda: "Nothing was changed" in dialog.said.text())

@@ -54,7 +54,7 @@ def test_a_shortcut_is_the_studio_s():
     ("shortcuts", "told"),
     [
         ({"exprot": "Ctrl+E"}, "there is no command 'exprot'"),
-        ({"export": "Hello"}, "'Hello' is no shortcut. Write it as"),
+        ({"export": "Hello"}, "'Hello' is not a shortcut. Write it as"),
         ({"note": "Ctrl+S"}, "Ctrl+S belongs to 'save'. Give 'save' another"),
         ({"note": "Ctrl+Q", "export": "Ctrl+Q"}, "Ctrl+Q belongs to 'note'"),
     ],

@@ -302,7 +302,7 @@ def test_frame_times_give_whole_rates_only_where_their_digits_say_so(
 
 def test_a_frame_time_of_few_digits_is_reported(path: Path) -> None:
     assert read(path, figure(time="0.03")).notes == (
-        "its frame time of 0.03 s was taken for 30 frames a second",
+        "its frame time of 0.03 s was read as 30 frames a second",
     )
     assert read(path, figure(time="0.033")).notes == ()
 

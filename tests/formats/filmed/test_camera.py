@@ -46,5 +46,5 @@ def test_a_camera_can_be_closed_while_it_is_read(tmp_path: Path) -> None:
 
 def test_a_file_that_is_no_video_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a.mp4").write_bytes(b"nothing")
-    with pytest.raises(FileError, match="no video"):
+    with pytest.raises(FileError, match="not a video"):
         CameraFeed(str(tmp_path / "a.mp4"))

@@ -90,8 +90,8 @@ def test_without_the_extra_the_message_says_what_to_install(
     ("how", "words"),
     [
         ("broken", "does not run here: libEGL.so.1: cannot open"),
-        ("dies", "has ended by itself"),
-        ("babbles", "has ended by itself"),
+        ("dies", "stopped by itself"),
+        ("babbles", "stopped by itself"),
     ],
 )
 def test_an_estimator_that_fails_is_reported_with_a_remedy(

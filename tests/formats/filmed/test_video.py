@@ -82,14 +82,14 @@ def test_a_film_that_breaks_off_gives_what_it_has(tmp_path: Path) -> None:
 def test_what_is_no_video_says_so_and_what_to_do(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "a.mp4"
     path.write_bytes(content)
-    with pytest.raises(FileError, match=r"no video that can be read.*Convert it to MP4"):
+    with pytest.raises(FileError, match=r"not a video that can be read.*Convert it to MP4"):
         read(path)
 
 
 def test_an_mp4_without_its_end_is_refused(tmp_path: Path) -> None:
     path = make_film(tmp_path / "a.mp4", [n / 20 for n in range(100)])
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
-    with pytest.raises(FileError, match="no video that can be read"):
+    with pytest.raises(FileError, match="not a video that can be read"):
         read(path)
 
 

@@ -451,7 +451,7 @@ def test_points_of_human36m_are_told_by_where_they_lie(read: Any) -> None:
     found = read({"fps": 30, "frames": [{"keypoints_3d": (at * [1, -1, -1]).tolist()}] * 3})
     upright(found)
     assert found.canonical[0][0, PLACE["left_wrist"]] == pytest.approx(FIGURE["left_wrist"], abs=1e-6)
-    assert any("taken for Human3.6M's" in note for note in found.notes)
+    assert any("read as those of Human3.6M's" in note for note in found.notes)
     coco = read([{"keypoints": flat(picture("coco"))}] * 3)
     assert not any("Human3.6M" in note for note in coco.notes)
 

@@ -168,7 +168,7 @@ def test_one_marker_of_a_joint_is_taken_and_reported(tmp_path, clip):
     path = tmp_path / "a.trc"
     path.write_bytes(write_trc(markers, clip.fps))
     assert read_marker_track(path).notes == (
-        "of the shoulder, elbow, knee only one marker is known, which is on the skin",
+        "only one marker of the shoulder, elbow, knee is known, and it is on the skin",
     )
 
 

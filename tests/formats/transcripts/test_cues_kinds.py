@@ -239,4 +239,4 @@ def test_words_of_elan_lie_where_its_time_origin_puts_them(
 
 def test_media_that_begin_at_different_times_and_are_called_otherwise_are_told(tmp_path: Path) -> None:
     found = read(tmp_path, eaf(("a.mp4", 1000), ("b.wav", 2000)), "a.eaf", 60.0)
-    assert any("none is called as the sound" in note for note in found.notes)
+    assert any("none has the name of the sound" in note for note in found.notes)

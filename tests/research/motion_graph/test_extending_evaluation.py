@@ -50,7 +50,7 @@ def test_strokes_are_counted_by_how_much_later_they_come() -> None:
 def test_takes_are_held_out_and_driven_and_the_best_paths_stand_beside() -> None:
     takes, said = talkers()
     rows = list(score_extending(hold_out_takes(takes[:3], said[:3])[:1], ahead=(None, 1.0)))
-    assert [r.how for r in rows] == ["heard", "told 1 s ahead", "all known"]
+    assert [r.how for r in rows] == ["heard", "announced 1 s ahead", "all known"]
     heard, told, best = rows
     assert heard.met < told.met and told.met > 0.6 and best.met > 0.6 and best.searches == 0
     assert told.searches <= 10.5 and told.work > 0 and told.stresses == heard.stresses > 5

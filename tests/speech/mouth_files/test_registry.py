@@ -58,7 +58,7 @@ def test_every_reader_is_tried_by_a_made_file() -> None:
 @pytest.mark.parametrize(
     ("kind", "told"),
     [
-        ("moho, rhubarb", "24 were taken"),
+        ("moho, rhubarb", "24 frames a second were assumed"),
         ("papagayo", "2 voices; the first"),
         ("azure ticks", "ticks of 100 nanoseconds"),
         ("azure milliseconds", "read as milliseconds"),
@@ -85,18 +85,20 @@ def test_a_first_column_that_counts_frames_is_no_time(tmp_path: Path) -> None:
 
 def test_moho_frames_that_do_not_fit_the_sound_are_at_a_higher_rate(tmp_path: Path) -> None:
     found = read(tmp_path, "moho, rhubarb", 0.8)
-    assert found.pieces[0].start == pytest.approx(0.25) and any("48 were taken" in n for n in found.notes)
+    assert found.pieces[0].start == pytest.approx(0.25) and any(
+        "48 frames a second were assumed" in n for n in found.notes
+    )
 
 
 @pytest.mark.parametrize(
     ("kind", "change", "cause"),
     [
-        ("rhubarb json", ('"D"', '"nonsense-label"'), "no mouth shape of Rhubarb"),
+        ("rhubarb json", ('"D"', '"nonsense-label"'), "nor a mouth shape of Rhubarb"),
         ("rhubarb json", ('"start": 0.5', '"start": "soon"'), "a time is 'soon'"),
         ("rhubarb xml", ("</rhubarbResult>", ""), "not well-formed XML"),
         ("rhubarb xml", ("<rhubarbResult>", '<!DOCTYPE r [<!ENTITY a "b">]><rhubarbResult>'), "entities"),
-        ("papagayo", ("\n24\n", "\nx\n"), "frames a second"),
-        ("azure ticks", ('"visemeId": 2}', '"visemeId": 99}'), "no mouth shape"),
+        ("papagayo", ("\n24\n", "\nx\n"), "its frame rate"),
+        ("azure ticks", ('"visemeId": 2}', '"visemeId": 99}'), "nor a mouth shape"),
         ("ovr csv", ("0.5,0,", "0.5,x,"), "no number for 'sil'"),
         ("ovr json", ('"Visemes": [1.0, ', '"Visemes": ['), "no phones and no mouth shapes"),
         ("gentle", ('"duration": 0.5', '"duration": null'), "has no time"),

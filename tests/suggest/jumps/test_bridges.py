@@ -293,7 +293,7 @@ def test_no_bridge_throws_the_hands() -> None:
         project = edits.add_stance(project, "arms", clip.name, [TOY.id(project, clip.name)])
     assert bridge_all(project) == (project, ())
     (line,) = describe_unbridged(project)
-    assert "both loops are too short" in line and "look thrown" in line
+    assert "both loops are too short" in line and "would look like a jolt" in line
     _, made = bridge_all(stances(3))
     assert all(x.metres / x.seconds < HASTY for x in made)
 
@@ -334,7 +334,7 @@ def test_no_bridge_is_made_where_a_joint_had_to_go_faster_than_in_the_clips() ->
     project = among_calm_clips(1.0, 0.7)
     assert bridge_all(project) == (project, ())
     (line,) = describe_unbridged(project)
-    assert "goes 1.4 m/s, and at most 0.6 m/s in the clips" in line
+    assert "moves at 1.4 m/s, but at most at 0.6 m/s in the clips" in line
 
 
 def test_between_single_poses_there_is_nothing_to_blend() -> None:

@@ -1,4 +1,4 @@
-// By when each meta action of a plan has to be over.
+// The times by which the meta actions of a plan have to be over.
 //
 // Translated from metagraph/playback/planning/bounds.py; change that, and translate anew.
 #pragma once
@@ -13,15 +13,15 @@ struct _First;
 
 namespace bounds {
 
-inline constexpr int LOOKED_AT = 6; // how many that follow a meta action are told
+inline constexpr int LOOKED_AT = 6; // how many of those that follow a meta action are listed
 inline List<Ref<Bound>> bounds(const List<Ref<MetaAction>>& metas);
 inline double begins(const Ref<MetaAction>& meta);
 
 }  // namespace bounds
 
-/// A meta action with when the next more important one begins (limit), and the next as important that was asked for
-/// (wish); infinity where there is none. after: those as important that were asked for and say how late they may be,
-/// the next first.
+/// A meta action and its bounds. limit: when the next more important one begins; wish: when the next equally important
+/// request begins; infinity if there is none. after: equally important requests that say how late they may be, the next
+/// one first.
 struct Bound {
     Ref<MetaAction> meta;
     double limit;
@@ -32,7 +32,7 @@ struct Bound {
         : meta(std::move(meta_)), limit(limit_), wish(wish_), after(std::move(after_)) {}
 };
 
-/// The first of some meta actions of a rank, written or asked for, and when it starts.
+/// The first of some meta actions of a rank, written or requested, and when it starts.
 struct _First {
     double rank;
     bool written;
@@ -44,7 +44,7 @@ struct _First {
 
 namespace bounds {
 
-/// Return each meta action with what bounds it.
+/// Return each meta action with its bounds.
 inline List<Ref<Bound>> bounds(const List<Ref<MetaAction>>& metas) {
     List<Ref<Bound>> out;
     List<Ref<_First>> first;
@@ -89,7 +89,8 @@ inline List<Ref<Bound>> bounds(const List<Ref<MetaAction>>& metas) {
     return lang::backwards(out);
 }
 
-/// Return when a meta action may begin at the earliest. One whose stroke is judged is placed where that comes.
+/// Return the earliest time at which a meta action may begin. One whose stroke is judged is placed where its stroke
+/// comes.
 inline double begins(const Ref<MetaAction>& meta) {
     if (meta->request->late.has_value() && meta->request->stroke.has_value()) {
         return std::min(meta->start, meta->request->start);

@@ -1,6 +1,7 @@
-// Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language can mix alike.
+// Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language mixes in the
+// same way.
 //
-// Nothing is remembered between draws, so changing one request leaves the draws of all others as they were.
+// Draws remember nothing, so a change of one request does not change the draws of the others.
 //
 // Translated from metagraph/playback/planning/choice.py; change that, and translate anew.
 #pragma once
@@ -34,12 +35,12 @@ namespace choice {
 /// Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero byte, then
 /// mixed.
 ///
-/// The seed, mixed, is xored into FNV's offset basis.
+/// The mixed seed is xored into FNV's offset basis.
 inline std::uint32_t key32(std::uint32_t seed, const List<std::string>& words) {
     return hashing::mix(choice::keyed(seed, words));
 }
 
-/// Return what draws of one key have in common: the hash of a seed and words before it is mixed.
+/// Return the hash of a seed and words before it is mixed, which all draws of one key share.
 inline std::uint32_t keyed(std::uint32_t seed, const List<std::string>& words) {
     int value = hashing::begun(seed);
     for (const auto& word : words) {
@@ -53,13 +54,13 @@ inline double uniform(std::uint32_t seed, const List<std::string>& words) {
     return (hashing::mix(choice::keyed(seed, words)) + 0.5) / choice::ALL;
 }
 
-/// Return what `uniform` does with one word more than a key has.
+/// Return the number that `uniform` returns for a key and one more word.
 inline double chance_of(std::uint32_t key, const std::string& purpose) {
     return (hashing::mix(hashing::absorb(key, purpose)) + 0.5) / choice::ALL;
 }
 
-/// Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, which any language can do alike: `a =
-/// ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+/// Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, in a way that any language can
+/// compute: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
 inline double log_normal(double mean, double deviation, double u, double v) {
     double share = deviation / mean;
     double spread = std::log1p(share * share);
@@ -67,7 +68,7 @@ inline double log_normal(double mean, double deviation, double u, double v) {
     return mean * std::exp(std::sqrt(spread) * z - spread / 2.0);
 }
 
-/// Return one of the ids, as `picked` does.
+/// Return one of the ids, chosen as by `picked`.
 inline std::string pick(
     std::uint32_t seed,
     const std::string& key,
@@ -79,8 +80,8 @@ inline std::string pick(
 
 /// Return one of the ids, id k with probability weight_k / sum.
 ///
-/// Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or removing one
-/// candidate changes the choice only where that candidate wins. Raises ValueError when no weight is positive.
+/// Each id draws its own exponential time, -log(u_k) / weight_k, and the shortest wins. So adding or removing a
+/// candidate changes the choice only if that candidate wins. Raises ValueError when no weight is positive.
 inline std::string picked(std::uint32_t key, const std::string& purpose, const Map<std::string, double>& weights) {
     std::string best = "";
     double shortest = INFINITY;

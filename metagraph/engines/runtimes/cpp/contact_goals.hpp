@@ -1,5 +1,5 @@
-// Find where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by how much
-// of it shows.
+// Find the goals that contacts set for the hands at a time: contacts of the cue that plays and of the loops under it,
+// each weighted by how much of it shows.
 //
 // Translated from metagraph/playback/posing/contact_goals.py; change that, and translate anew.
 #pragma once
@@ -49,7 +49,7 @@ inline bool _moves(const Ref<ContactRig>& rig, const Ref<Action>& action, int ar
 
 namespace contact_goals {
 
-/// Return where a layer wants the hands at a time.
+/// Return a layer's goals for the hands at a time.
 ///
 /// `cue` is the one that plays, if it has motion. `place` is the index of the rest in force, -1 for none. `strength` is
 /// how much of the arms the layer moves, 0..1.
@@ -74,7 +74,7 @@ inline List<Ref<HandGoal>> layer_goals(
         }
         if (lang::len(cue->action->contacts) > 0) {
             double left = cue_times::seam_left(cue, time);
-            if (left > 0.0) { // what the cycle before wanted at its end, as far as its pose is still shown
+            if (left > 0.0) { // the goals at the end of the previous cycle, as far as its pose still shows
                 List<double> found;
                 for (const auto& w : shown) {
                     found.push_back(strength * left * w);
@@ -114,7 +114,7 @@ inline List<Ref<HandGoal>> layer_goals(
     return out;
 }
 
-/// Return where a loop wants the hands, less what the cue above it covers.
+/// Return a loop's goals for the hands, reduced by the cue above it.
 inline List<Ref<HandGoal>> _loop_goals(
     const Ref<ContactRig>& rig,
     const Ref<Project>& project,

@@ -1,7 +1,8 @@
-// Keeping hands in contact with the body, and out of it: two-bone arms brought to where they should be.
+// Keep hands in contact with the body, and outside it, by moving two-bone arms to their goals.
 //
-// The body's parts are capsules, each fixed to a joint. Rotations are quaternions xyzw, lengths metres; places are
-// those in a rig's list of joints. Worked out one pose at a time, in plain numbers, the same in all languages.
+// The body's parts are capsules, each fixed to a joint. Rotations are quaternions xyzw, lengths metres; a place is an
+// index into a rig's list of joints. The code computes one pose at a time, with plain numbers, the same in all
+// languages.
 //
 // Translated from metagraph/motion/contact_solve.py; change that, and translate anew.
 #pragma once
@@ -86,7 +87,7 @@ inline std::tuple<double, double, double, double> apart(
 
 }  // namespace contact_solve
 
-/// Places of an arm's joints, and of all joints from its upper arm on, parents first.
+/// The places of an arm's joints, and of all joints from its upper arm on, parents first.
 struct ContactArm {
     int upper;
     int lower;
@@ -97,9 +98,9 @@ struct ContactArm {
         : upper(upper_), lower(lower_), hand(hand_), below(std::move(below_)) {}
 };
 
-/// A part of the body. joint, to: the places its line's ends are fixed to; a, b: where, in those joints' own spaces.
-/// arm: 0 left, 1 right, -1 of neither. kind: whether it is pushed out of others: OBSTACLE is not; FOREARM runs from
-/// the elbow to the wrist; HAND.
+/// A part of the body. joint, to: the places of the joints that carry the ends of its line; a, b: where the ends are,
+/// in the spaces of those joints. arm: 0 left, 1 right, -1 neither. kind: whether it is pushed out of others: an
+/// OBSTACLE is not; a FOREARM, from the elbow to the wrist, and a HAND are.
 struct BodyCapsule {
     int joint;
     std::tuple<double, double, double> a;
@@ -121,9 +122,9 @@ struct BodyCapsule {
         : joint(joint_), a(std::move(a_)), to(to_), b(std::move(b_)), radius(radius_), arm(arm_), kind(kind_) {}
 };
 
-/// What of a skeleton contacts need. joints: theirs, parents first. parents: for each the place of the nearest one
-/// above, which has to be its parent; -1 for a root. places: names of joints to their places. arms: left, right; hands:
-/// the names of their hands. contacts, guard: what is on.
+/// The part of a skeleton that contacts need. joints: parents first. parents: for each joint, the place of its parent,
+/// -1 for a root. places: joint name -> place. arms: left, right; hands: the names of their hands. contacts, guard:
+/// whether each is on.
 struct ContactRig {
     List<int> joints;
     List<int> parents;
@@ -172,8 +173,8 @@ struct HandGoal {
         : arm(arm_), to(to_), at(std::move(at_)), turn(std::move(turn_)), weight(weight_) {}
 };
 
-/// A pose of a rig's joints: `local` rotations and `moved` translations in their parents' space, `turned` and `at` in
-/// the character's, which `spread` works out.
+/// A pose of a rig's joints: `local` rotations and `moved` translations are in the parents' space; `turned` and `at`
+/// are in the character's space, and `spread` computes them.
 struct ContactPose {
     List<std::tuple<double, double, double, double>> local;
     List<std::tuple<double, double, double>> moved;
@@ -191,7 +192,7 @@ struct ContactPose {
 
 namespace contact_solve {
 
-/// Work out where all joints are.
+/// Compute where all joints are.
 inline void spread(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose) {
     pose->turned = List<std::tuple<double, double, double, double>>{};
     pose->at = List<std::tuple<double, double, double>>{};
@@ -222,8 +223,8 @@ inline void _join(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose, int 
     }
 }
 
-/// Bring hands to their goals, then hands and forearms out of the body; return whether anything moved. The joints'
-/// places have to be known (`spread`).
+/// Move hands to their goals, then push hands and forearms out of the body; return whether anything moved. Call
+/// `spread` first.
 inline bool solve_contacts(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose, const List<Ref<HandGoal>>& goals) {
     bool moved = false;
     List<double> held = List<double>{0.0, 0.0};
@@ -289,7 +290,7 @@ inline bool _on_arm(const Ref<ContactRig>& rig, int place, int arm) {
     return is_any;
 }
 
-/// Bring a hand to the weighted mean of its goals. wrist, hand: where and how it was without any.
+/// Move a hand to the weighted mean of its goals. wrist, hand: its position and rotation without goals.
 inline void _hold(
     const Ref<ContactRig>& rig,
     const Ref<ContactPose>& pose,
@@ -356,7 +357,7 @@ inline void _hold(
     );
 }
 
-/// Return a hand's turn, as near to it as the wrist may be turned from how the hand was.
+/// Return a hand's rotation, limited to what the wrist allows from the hand's earlier rotation.
 inline std::tuple<double, double, double, double> _within_wrist(
     const std::tuple<double, double, double, double>& hand,
     const std::tuple<double, double, double, double>& turn
@@ -379,8 +380,8 @@ inline std::tuple<double, double, double, double> _within_wrist(
     );
 }
 
-/// Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it. side_of: where a
-/// straight arm bends to, in the upper arm's own space.
+/// Move a wrist to a goal, or as near as the arm reaches, with the elbow on the side to which it is bent; rotate the
+/// hand. side_of: the direction in which a straight arm bends, in the upper arm's own space.
 inline void bring(
     const Ref<ContactRig>& rig,
     const Ref<ContactPose>& pose,
@@ -464,11 +465,11 @@ inline std::tuple<double, double, double, double> _above(
     return above < 0 ? std::tuple<double, double, double, double>{0.0, 0.0, 0.0, 1.0} : lang::at(pose->turned, above);
 }
 
-/// Push forearms and hands out of what they are inside of, by the least shift of the wrists; return whether any was.
-/// held: how much each hand is kept somewhere, and so is not pushed.
+/// Push forearms and hands out of the capsules they are inside, by the smallest shift of the wrists; return whether any
+/// was inside. held: how much a contact holds each hand, which is then not pushed.
 ///
-/// An arm that goes through something is pushed out to one side before its middle and to the other after: towards the
-/// middle it is pushed ever less, so that it does not jump.
+/// An arm that passes through a capsule is pushed to one side before the middle and to the other side after it. The
+/// push gets weaker towards the middle, so that the arm does not jump.
 inline bool _guarded(
     const Ref<ContactRig>& rig,
     const Ref<ContactPose>& pose,
@@ -570,8 +571,8 @@ inline List<std::tuple<double, double, double, double>> _balls(
     return out;
 }
 
-/// Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for each side how
-/// much of that is to be done, which the first pass finds.
+/// Return the shift of a wrist that brings its arm out of all other capsules, or closer to that. whole: for each side,
+/// the share of the shift to apply, which the first pass finds.
 inline std::tuple<double, double, double> _shift(
     const Ref<ContactRig>& rig,
     const List<std::tuple<double, double, double>>& ends,
@@ -643,8 +644,8 @@ inline std::tuple<double, double, double> _shift(
     return shift;
 }
 
-/// Return how far along the line that begins at `ends[i]` the shortest way from that at `ends[k]` ends, 0..1. Of lines
-/// side by side, where it may end anywhere, the middle counts more the less they cross.
+/// Return where on the line that begins at `ends[i]` the shortest way from the line at `ends[k]` ends, 0..1. For nearly
+/// parallel lines, where it could end anywhere, the result moves towards the middle.
 inline double _along(const List<std::tuple<double, double, double>>& ends, int i, int k) {
     std::tuple<double, double, double> a = lang::at(ends, i);
     std::tuple<double, double, double> c = lang::at(ends, k);
@@ -672,7 +673,7 @@ inline double _along(const List<std::tuple<double, double, double>>& ends, int i
     return s;
 }
 
-/// Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, and its length.
+/// Return the shortest way from the line that begins at `ends[k]` to the one at `ends[i]`, and its length.
 inline std::tuple<double, double, double, double> apart(
     const List<std::tuple<double, double, double>>& ends,
     int i,

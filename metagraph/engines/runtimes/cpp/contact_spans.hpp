@@ -1,7 +1,7 @@
-// Contacts of an action: where on the body a hand stays, or goes along, for a while of its clip.
+// Contacts of an action: where on the body a hand stays, or moves along it, for a part of its clip.
 //
-// A contact says where the wrist is in the space of a joint, and how the hand is turned there, so that it holds
-// whatever else moves that joint: a breathing spine, a layer below, a body of another shape.
+// A contact gives the position of the wrist and the rotation of the hand in the space of a joint. So it holds whatever
+// else moves that joint: a breathing spine, a layer below, a body of another shape.
 //
 // Translated from metagraph/motion/contact_spans.py; change that, and translate anew.
 #pragma once
@@ -17,8 +17,7 @@ namespace contact_spans {
 
 inline const List<std::string> HANDS = List<std::string>{"left", "right"};
 inline const List<std::string> PLACES = List<std::string>{"palm", "fingertips", "back", "wrist"};
-// seconds in which a hand comes to a contact, and leaves it, where nothing else is said
-inline constexpr double EASE = 0.15;
+inline constexpr double EASE = 0.15; // seconds in which a hand comes to a contact, and leaves it, by default
 // seconds it takes at least where the contact lasts: what it touches may be far from its place
 inline constexpr double SETTLES = 0.3;
 inline double contact_weight(const Ref<ContactSpan>& span, double seconds, double first, double last);
@@ -37,12 +36,12 @@ struct ContactKey {
         : time(time_), at(std::move(at_)), turn(std::move(turn_)) {}
 };
 
-/// A hand kept where it is on the body.
+/// A hand that stays at a place on the body.
 ///
-/// hand: left or right. place: what of the hand touches: palm, fingertips, back, wrist. to: the name of the joint it
-/// stays with. start, end: clip seconds. keys: one for a hand that stays, more, in order, for one that moves over the
-/// body. ease_in, ease_out: seconds inside the span in which it comes and goes; none where the action begins, or ends,
-/// within the span.
+/// hand: left or right. place: the part of the hand that touches: palm, fingertips, back, wrist. to: the name of the
+/// joint it stays with. start, end: clip seconds. keys: one for a hand that stays, more, in order, for one that moves
+/// over the body. ease_in, ease_out: seconds inside the span in which the contact sets in and fades out; they do not
+/// apply if the action begins, or ends, within the span.
 struct ContactSpan {
     std::string hand;
     std::string place;
@@ -75,7 +74,7 @@ struct ContactSpan {
 
 namespace contact_spans {
 
-/// Return how much a hand is held at clip seconds, 0..1. first, last: what of the clip plays.
+/// Return how much a hand is held at a second of the clip, 0..1. first, last: the seconds of the clip that play.
 inline double contact_weight(const Ref<ContactSpan>& span, double seconds, double first, double last) {
     if (seconds < span->start || seconds > span->end) {
         return 0.0;
@@ -93,7 +92,7 @@ inline double contact_weight(const Ref<ContactSpan>& span, double seconds, doubl
     return shown * shown * (3.0 - 2.0 * shown);
 }
 
-/// Return where a hand is at clip seconds: between two keys on the straight line.
+/// Return where a hand is at a second of the clip, interpolated linearly between two keys.
 inline Ref<ContactKey> contact_key(const Ref<ContactSpan>& span, double seconds) {
     Ref<ContactKey> before = lang::at(span->keys, 0);
     for (const auto& after : span->keys) {

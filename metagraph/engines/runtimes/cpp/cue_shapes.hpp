@@ -1,4 +1,4 @@
-// How an action would play for a request: from when, for how long, and how late.
+// How an action would play for a request: when it begins, how long it lasts and how late it is.
 //
 // A gesture waits for its stroke or cuts its preparation to catch up with it; its hold is stretched, and its retraction
 // may be cut (Borer et al., section 6.2).
@@ -50,7 +50,8 @@ inline Ref<MetaRequest> remaining(const Ref<MetaAction>& meta, double now);
 
 }  // namespace cue_shapes
 
-/// How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue.
+/// How an action would play: from `start` on, for `length` seconds, at least `shortest`; the other fields are those of
+/// a cue.
 struct CueShape {
     double start;
     double entry;
@@ -83,8 +84,8 @@ struct CueShape {
 
 namespace cue_shapes {
 
-/// Return how an action would play for a request from `now` on, or as a step on the way to it. speed: a factor of its
-/// own.
+/// Return how an action would play for a request from `now` on, or as a step on the way to it. speed: a factor of the
+/// action's own speed.
 inline Ref<CueShape> shape_of(
     const Ref<Project>& project,
     const Ref<Action>& action,
@@ -144,13 +145,13 @@ inline Ref<CueShape> shape_of(
     return lang::made<CueShape>(begin, entry, length, shortest, hold_from, hold_to, hold, speed);
 }
 
-/// Whether something that plays so is over by a limit.
+/// Return whether something with this shape is over by a limit.
 inline bool fits_before(const Ref<CueShape>& shape, double limit) {
     return shape->start + shape->shortest <= limit + cue_shapes::FITS;
 }
 
-/// Return by how many seconds an action that plays so comes late, at its stroke where one is asked for; less than 0
-/// before its time.
+/// Return by how many seconds an action with this shape comes late, measured at its stroke if the request has one;
+/// below 0 if it comes early.
 inline double lateness(
     const Ref<Project>& project,
     const Ref<Action>& action,
@@ -165,13 +166,13 @@ inline double lateness(
     return shape->start - request->start;
 }
 
-/// Return by how many seconds a request may come late, 0 where it does not say.
+/// Return by how many seconds a request may come late, 0 if it does not say.
 inline double slack_of(const Ref<MetaRequest>& request) {
     return !request->late.has_value() ? 0.0 : *request->late;
 }
 
-/// Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked
-/// for.
+/// Return how many seconds a gesture takes if its retraction is cut and its hold is left out, unless the request has a
+/// hold.
 inline double hurried(const Ref<Project>& project, const Ref<Action>& action, const Ref<CueShape>& shape) {
     auto [start, end] = project->span(action);
     bool repeats = repeating::cycle_of(action->kind, action->timing, start, end) > 0;
@@ -189,7 +190,7 @@ inline double hurried(const Ref<Project>& project, const Ref<Action>& action, co
     return std::min(shape->length, left + std::max(action->timing->blend_out, cue_shapes::RETRACTION));
 }
 
-/// Whether two requests may be met by one stroke.
+/// Return whether one stroke may meet two requests.
 inline bool may_share(const Ref<MetaRequest>& request, const Ref<MetaRequest>& other) {
     if (!request->stroke.has_value() || !other->stroke.has_value()) {
         return false;
@@ -201,7 +202,7 @@ inline bool may_share(const Ref<MetaRequest>& request, const Ref<MetaRequest>& o
         && std::abs(*request->stroke - *other->stroke) <= cue_shapes::SHARED;
 }
 
-/// Whether an action is what a request for any asks for.
+/// Return whether an action fits a request that does not name one.
 inline bool meets(const Ref<Action>& action, const Ref<MetaRequest>& request) {
     bool are_all = true;
     for (const auto& tag : request->tags) {
@@ -215,7 +216,8 @@ inline bool meets(const Ref<Action>& action, const Ref<MetaRequest>& request) {
         && (lang::len(request->among) == 0 || lang::contains(request->among, action->id));
 }
 
-/// Return what a meta action asks for; of a remainder, for as long as is left. A model says no length.
+/// Return the request of a meta action; for a remainder, with the duration that is left. What a model wrote has no
+/// duration.
 inline Ref<MetaRequest> remaining(const Ref<MetaAction>& meta, double now) {
     Ref<MetaRequest> request = meta->request;
     if (!request->duration.has_value() || (meta->part == 0 && !meta->written)) {

@@ -1,5 +1,5 @@
-// Compute what of a cue, or of a stance's loop, shows at a time, with plain numbers. `player` and `Cue.clip_seconds` do
-// the same with arrays.
+// Compute how much of a cue, or of a stance's loop, shows at a time, with plain numbers. `player` and
+// `Cue.clip_seconds` do the same with arrays.
 //
 // Translated from metagraph/playback/posing/cue_times.py; change that, and translate anew.
 #pragma once
@@ -86,8 +86,8 @@ inline double cue_seconds(const Ref<Cue>& cue, double time) {
     return cue->entry + elapsed - held + more + held * ((cue->hold_to - cue->hold_from) / cue->hold);
 }
 
-/// Return how much of the way from where a cycle begins to where the one before it ended is still added at a time,
-/// 0..1, so that a cue that repeats goes on without a jump.
+/// Return the share, 0..1, of the offset between the end of one cycle and the beginning of the next that is still added
+/// at a time, so that a cue that repeats does not jump.
 inline double seam_left(const Ref<Cue>& cue, double time) {
     double cycle = cue->cycle_to - cue->cycle_from;
     double into = cue->entry - cue->cycle_from + (time - cue->start) * cue->tempo;

@@ -1,8 +1,8 @@
-// Bringing feet to where they should stand: two-bone legs whose knees keep their direction, under hips that come along
-// and sink rather than let a leg snap straight.
+// Move feet to where they should stand, with two-bone legs whose knees keep their direction. The hips move along and
+// sink, so that no leg snaps straight.
 //
-// Rotations are quaternions xyzw, lengths metres. Worked out one pose at a time, in plain numbers, the same in all
-// languages. All amounts are ours, chosen by eye.
+// Rotations are quaternions xyzw, lengths metres. The code computes one pose at a time, with plain numbers, the same in
+// all languages. All amounts are ours, chosen by eye.
 //
 // Translated from metagraph/motion/feet_solve.py; change that, and translate anew.
 #pragma once
@@ -34,8 +34,8 @@ inline bool plant_feet(
 
 }  // namespace feet_solve
 
-/// Where a foot's joint should be, in the character's space. planted: how much it stands there, 0..1. lift: metres that
-/// a step has it above that.
+/// Where a foot's joint should be, in the character's space. planted: how firmly it stands there, 0..1. lift: height of
+/// a step above that, metres.
 struct FootGoal {
     std::tuple<double, double, double> at;
     std::tuple<double, double, double, double> turn;
@@ -53,7 +53,7 @@ struct FootGoal {
 
 namespace feet_solve {
 
-/// Return how far it is from one place of a foot to another, metres, a turn counted in.
+/// Return the distance between two places of a foot, in metres; a rotation counts as a distance, too.
 inline double foot_way(const Ref<FootGoal>& a, const Ref<FootGoal>& b) {
     auto [ax, ay, az, aw] = a->turn;
     auto [bx, by, bz, bw] = b->turn;
@@ -62,8 +62,8 @@ inline double foot_way(const Ref<FootGoal>& a, const Ref<FootGoal>& b) {
     return plain_vectors::length(plain_vectors::minus(b->at, a->at)) + feet_solve::TURNING * turn;
 }
 
-/// Bring feet to their goals, as much as those are planted; return whether anything moved. goals: left, right, or none.
-/// strength: the dial. Joints' places need not be known.
+/// Move feet to their goals, as far as these are planted; return whether anything moved. goals: left and right, or
+/// none. strength: the user's dial. You need not call `spread` first.
 inline bool plant_feet(
     const Ref<WeightRig>& rig,
     const Ref<ContactPose>& pose,

@@ -1,4 +1,4 @@
-// Actions and stances by what they are called.
+// Find actions and stances by id or name.
 //
 // Translated from metagraph/playback/planning/finding.py; change that, and translate anew.
 #pragma once
@@ -27,7 +27,8 @@ inline Ref<Stance> stance_called(
 
 namespace finding {
 
-/// Return the action of an id or, failing that, a name; of several of one name the likeliest. layer: None for any.
+/// Return the action with an id or, failing that, with a name; of several with the same name, the likeliest. layer:
+/// None for any.
 inline Ref<Action> action_called(
     const List<Ref<MetaGraph>>& graphs,
     const std::string& word,
@@ -52,7 +53,7 @@ inline Ref<Action> action_called(
     return best;
 }
 
-/// Return the stance of an id or, failing that, a name, in the first layer that has one so called.
+/// Return the stance with an id or, failing that, with a name, in the first layer that has one.
 inline Ref<Stance> stance_called(
     const List<Ref<MetaGraph>>& graphs,
     const std::string& word,

@@ -1,7 +1,7 @@
-// Compute what the arms of a plan weigh at a time: how far a gesture has carried their mass away from its stance.
+// Compute how far the arms of a plan have moved their mass away from its stance at a time.
 //
-// The body answers with a delay, so it follows not the arms' place at one time but a cubic B-spline through their
-// places at four fixed times before it. This is smooth, and a function of plan and time only.
+// The body reacts with a delay. So it does not follow the arms at one moment, but a cubic B-spline through their places
+// at four earlier fixed times. This is smooth, and depends only on plan and time.
 //
 // Translated from metagraph/playback/posing/follow_through.py; change that, and translate anew.
 #pragma once
@@ -67,7 +67,7 @@ inline List<double> _row(const Ref<ArmTrack>& track, double seconds);
 
 }  // namespace follow_through
 
-/// What a clip's arms do.
+/// How the arms of a clip move their mass.
 ///
 /// `clip` is its id. `rows` has a row for each tenth of a second, relative to the base pose: how far the left arm
 /// shifts the centre of mass of the whole body to the left, up and ahead, the same for the right arm, and how far each
@@ -96,7 +96,7 @@ inline double knot_time(int number) {
 ///
 /// `tracks` are by action. `hands` names the joints of the hands. `cue` is that of the arms' layer, if it has motion,
 /// and `place` the index of the rest in force, -1 for none; `body_cue` and `body_place` are the same for the body's
-/// layer. A cue of the clip that the body's layer also shows brings its own hips and does not count.
+/// layer. A cue whose clip the body's layer also shows moves the hips itself and does not count.
 inline List<double> arm_sway(
     const Ref<Project>& project,
     const Map<std::string, Ref<ArmTrack>>& tracks,
@@ -160,7 +160,7 @@ inline List<double> arm_sway(
     return out;
 }
 
-/// Return what moves the body at a time: the eight numbers, and their change a second. `sways` has the rows of the last
+/// Return the eight numbers that move the body at a time, and their change per second. `sways` has the rows of the last
 /// `KNOTS` times before it.
 inline List<double> driven(const List<List<double>>& sways, double time) {
     double u = (time - follow_through::OFFSET) / follow_through::STEP;

@@ -1,6 +1,7 @@
-// From letters to mouth shapes: what a mouth may do when neither sound nor phones of a line are there.
+// From letters to mouth shapes: what a mouth does if a line has neither sound nor phones.
 //
-// English spelling is read by a few rules; other alphabets by their vowels, what is unknown by turns of open and shut.
+// A few rules read English spelling. Other alphabets are read by their vowels. Unknown letters open and shut the mouth
+// in turn.
 //
 // Translated from metagraph/playback/life/graphemes.py; change that, and translate anew.
 #pragma once
@@ -203,7 +204,7 @@ struct Syllabary {
         : first(first_), last(last_), size(size_) {}
 };
 
-/// A sound of a text. shape: "" for a pause. size: characters' time. strength: of a syllable, 0 for what is none.
+/// A sound of a text. shape: "" for a pause. size: characters' time. strength: of a syllable, 0 for anything else.
 struct SpelledSound {
     std::string shape;
     double size;
@@ -213,7 +214,7 @@ struct SpelledSound {
         : shape(std::move(shape_)), size(size_), strength(strength_) {}
 };
 
-/// Something said, as its letters tell: pieces in time, times and strengths (0..1) of its syllables.
+/// Something said, timed by its letters: pieces in time, and times and strengths (0..1) of its syllables.
 struct Spelled {
     List<Ref<MouthPiece>> pieces;
     List<double> peaks;
@@ -316,7 +317,7 @@ inline List<std::string> _unknown(
     return List<std::string>{};
 }
 
-/// Return each word and how many characters' time of pause follows it.
+/// Return each word, and the pause after it, measured in characters.
 inline List<std::tuple<std::string, double>> split_words(const Ref<Alphabet>& alphabet, const std::string& text) {
     List<std::tuple<std::string, double>> out;
     std::string word = "";
@@ -341,7 +342,7 @@ inline List<std::tuple<std::string, double>> split_words(const Ref<Alphabet>& al
 
 /// Return a word's sounds, in turn.
 ///
-/// Content words are longer than the words between them; the first vowel bears the stress more often than not.
+/// Content words are longer than the words between them. The first vowel usually has the stress.
 inline List<Ref<SpelledSound>> sounds(const Ref<Alphabet>& alphabet, const std::string& word) {
     List<Ref<SpelledSound>> out;
     List<std::string> found = graphemes::shapes(alphabet, word);
@@ -374,7 +375,7 @@ inline double read_aloud(const Ref<Alphabet>& alphabet, const std::string& text)
     return std::max(graphemes::SHORTEST, lang::sum(found) / graphemes::PACE);
 }
 
-/// Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean is a
+/// Return how long a letter takes, measured in characters, by its code point: a Chinese, Japanese or Korean one is a
 /// syllable.
 inline double measure_letter(int code) {
     for (const auto& script : graphemes::_SYLLABARIES) {
@@ -385,7 +386,7 @@ inline double measure_letter(int code) {
     return 1.0;
 }
 
-/// Return what a text says in `duration` seconds; nothing where no letter of it is known.
+/// Return the sounds of a text that lasts `duration` seconds; none if it has no known letter.
 inline Ref<Spelled> spelled(const Ref<Alphabet>& alphabet, const std::string& text, double duration) {
     Ref<Spelled> out = lang::made<Spelled>();
     List<Ref<SpelledSound>> plan;

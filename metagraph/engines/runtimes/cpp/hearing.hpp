@@ -1,5 +1,5 @@
-// What asks do to a running plan: what they take back, what lasts from then on, and which layers have to be planned
-// again.
+// The effect of requests on a running plan: what they take back, what lasts from then on, and which layers have to be
+// planned again.
 //
 // Translated from metagraph/playback/planning/hearing.py; change that, and translate anew.
 #pragma once
@@ -44,9 +44,9 @@ inline Ref<Heard> _steer(
 
 }  // namespace hearing
 
-/// track: what lasts. fresh: what is asked of layers, with what goes on after a pause. withdrawn: ids of what was asked
-/// for before and is not any more; stopped: those of them that were taken back and not asked for anew. touched: layers
-/// that asks have to do with.
+/// track: lasting items. fresh: requests of layers, with those that continue after a pause. withdrawn: ids of earlier
+/// requests that no longer hold; stopped: those of them that were taken back, not replaced. touched: layers that the
+/// requests affect.
 struct Heard {
     Ref<Track> track;
     List<Ref<MetaRequest>> fresh;
@@ -68,9 +68,9 @@ struct Heard {
             touched(std::move(touched_)) {}
 };
 
-/// What speeches become beside those that are said already. said: all that are new or changed. begun: ids of those of
-/// which an earlier one is in them, changed; on: ids of which what is said already goes on. anew: ids under which
-/// something else was said before. moods: what is asked for with them.
+/// New speeches, combined with those that are being said. said: all that are new or changed. begun: ids of changed
+/// earlier ones among them; on: ids of those that continue. `anew`: ids under which something else was said before.
+/// moods: the moods requested with them.
 struct AddedSpeeches {
     List<Ref<Speech>> said;
     Set<std::string> begun;
@@ -91,12 +91,12 @@ struct AddedSpeeches {
             anew(std::move(anew_)),
             moods(std::move(moods_)) {}
 
-    /// Return what of a track stays beside these: moods of what goes on last as long as that, where no other is asked
-    /// for.
+    /// Return the part of a track that stays: moods of speeches that continue last as long as these, unless another
+    /// mood is requested.
     Ref<Track> leave(const Ref<Track>& track) const;
 };
 
-/// A track and requests while asks steer what is said. anew: ids of the requests that are asked for anew; the rest is
+/// A track and requests while asks steer speech. `anew`: ids of the requests that are made again; the other fields are
 /// as in `Heard`.
 struct SteeredSpeech {
     Ref<Track> track;
@@ -121,19 +121,20 @@ struct SteeredSpeech {
             requests(std::move(requests_)),
             anew(std::move(anew_)) {}
 
-    /// Return the ids of all of it.
+    /// Return the ids of everything in it.
     List<std::string> idents();
 
-    /// Break off an utterance at `stop`, and what was made for it at `now`.
+    /// Break off an utterance at `stop`, and the requests that belong to it at `now`.
     void interrupt(const std::string& ident, const Set<std::string>& made, double stop, double now, double soon);
 
-    /// Hold an utterance, and what was made for it and has not had its moment; what has begun goes back.
+    /// Pause an utterance, and the requests that belong to it and whose moment has not come; those that have begun go
+    /// back.
     void pause(const std::string& ident, const Set<std::string>& made, double stop, double now);
 
-    /// Go on with an utterance that is paused, and with what waits for it.
+    /// Resume a paused utterance, and the requests that wait for it.
     void resume(const std::string& ident, const Set<std::string>& made, double now, double soon);
 
-    /// Return a request moved by so many seconds, to no earlier than `least`.
+    /// Return a request moved by a number of seconds, but not to before `least`.
     Ref<MetaRequest> move_request(const Ref<MetaRequest>& request, double by, double least);
 };
 
@@ -304,7 +305,7 @@ inline Ref<MetaRequest> SteeredSpeech::move_request(const Ref<MetaRequest>& requ
 
 namespace hearing {
 
-/// Return the asks a request may have been made by: that of its own id, and those of which it would be a part.
+/// Return the ids of the asks from which a request may come: its own id, and those of which it would be a part.
 inline List<std::string> owners(const std::string& ident) {
     List<std::string> out = List<std::string>{ident};
     std::string left = ident;
@@ -319,8 +320,8 @@ inline List<std::string> owners(const std::string& ident) {
     }
 }
 
-/// Return what a request goes with when it is taken back: its `owners`, and what is said that a gesture was made for:
-/// "answer" for "answer/2".
+/// Return the ids with which a request is taken back: its `owners`, and the speech that a gesture belongs to: "answer"
+/// for "answer/2".
 inline List<std::string> makers(const std::string& ident) {
     List<std::string> out = hearing::owners(ident);
     auto [said, slash, number] = lang::parted_last(lang::at(out, -1), "/");
@@ -330,9 +331,9 @@ inline List<std::string> makers(const std::string& ident) {
     return out;
 }
 
-/// Return what asks do. requests, track: of the plan. meant: what is asked for, where speeches may overlap. now: what
-/// begins before stays; soon: so for voices. turning: layers whose models perform one thing in one mode and another in
-/// another.
+/// Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it.
+/// now: everything that begins earlier stays; soon: the same for voices. turning: layers whose models perform
+/// differently in different modes.
 inline Ref<Heard> heard(
     const List<Ref<MetaRequest>>& requests,
     const Ref<Track>& track,
@@ -358,7 +359,7 @@ inline Ref<Heard> heard(
         before.push_back(r->id);
     }
     lang::extend(before, track->idents());
-    // Who takes everything back still looks at whom it talks with.
+    // A client that takes everything back keeps the look at the user.
     Set<std::string> user;
     for (const auto& x : track->looks) {
         if (x->start < now && spots::is_same_spot(x->to, spots::named("user"))) {
@@ -422,7 +423,7 @@ inline Ref<Heard> heard(
             taken.insert(ident);
         }
     }
-    // Where the models may change stances again means nothing where they always might.
+    // Leave to change stances again means nothing if the models always may.
     Set<std::string> staying;
     for (const auto& s : track->stays) {
         if (s->on) {
@@ -476,7 +477,7 @@ inline Ref<Heard> heard(
         holds6 = is_any5;
     }
     bool turns = holds6;
-    if (turns) { // who talks moves otherwise than who listens
+    if (turns) { // talking and listening characters move differently
         for (const auto& layer : turning) {
             touched.insert(layer);
         }
@@ -523,7 +524,7 @@ inline Ref<Heard> heard(
     return hearing::_steer(requests, said, meant, now, soon);
 }
 
-/// Return what asks to say something make of a track: a line, something behind a line, or more of one.
+/// Return the effect of asks to say something on a track: a new line, a line after another, or more of one.
 inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Track>& track, double soon) {
     List<Ref<Speech>> said;
     Set<std::string> begun;
@@ -616,8 +617,7 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
     return lang::made<AddedSpeeches>(said, begun, on, anew, moods);
 }
 
-/// Return what asks do with what is said: it is broken off, paused, gone on with or finished, in turn. requests: of the
-/// plan before.
+/// Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the plan before.
 inline Ref<Heard> _steer(
     const List<Ref<MetaRequest>>& requests,
     const Ref<Heard>& heard,

@@ -1,5 +1,5 @@
-// What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in. Values; times
-// are seconds.
+// Requests that last: where to look, what to say, which mode to be in, which stance to stay in. Values; times are
+// seconds.
 //
 // Translated from metagraph/playback/life/items.py; change that, and translate anew.
 #pragma once
@@ -51,7 +51,7 @@ inline bool _same_felt(const Ref<MoodFrom>& a, const Ref<MoodFrom>& b);
 
 }  // namespace items
 
-/// Look at a point or a named point from `start` until `end`, or until the next look. strict: without averting.
+/// Look at a point or a named point from `start` until `end`, or until the next look. strict: without looking away.
 struct LookAt {
     std::string id;
     double start;
@@ -79,10 +79,10 @@ struct LookAt {
             priority(priority_) {}
 };
 
-/// Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower.
-/// length: seconds all of it would have taken, where something cut it short. timing: when its words and mouth shapes
-/// come, where that was told. skip: seconds of it that were said before a pause. more: whether more of it may come, so
-/// that it is not over when it falls silent. over: when it was said that none does, where it had fallen silent.
+/// Something said. line: id of the project's line, None for `text` alone. priority: a higher one interrupts a lower
+/// one. length: seconds that all of it would have taken, if it was cut short. timing: the times of its words and mouth
+/// shapes, if known. skip: seconds of it that were said before a pause. more: whether more of it may come, so that it
+/// is not over when it falls silent. over: when it was finished, if it had fallen silent before.
 struct Speech {
     std::string id;
     double start;
@@ -143,7 +143,7 @@ struct PlaceFrom {
         : id(std::move(id_)), start(start_), name(std::move(name_)), point(std::move(point_)) {}
 };
 
-/// A blink asked for.
+/// A requested blink.
 struct BlinkAt {
     std::string id;
     double start;
@@ -152,8 +152,8 @@ struct BlinkAt {
         : id(std::move(id_)), start(start_) {}
 };
 
-/// From `start` on the models change no stance of a layer (or, with `on` false, may again), until `end` or the next of
-/// these.
+/// From `start` on, the models change no stance of a layer, or may do so again with `on` false, until `end` or the next
+/// item of this kind.
 struct StayFrom {
     std::string id;
     double start;
@@ -167,17 +167,17 @@ struct StayFrom {
 
 namespace items {
 
-/// Return the second that what is said counts from: before its start if it goes on after a pause.
+/// Return the second from which the times of a speech count: before its start if it continues after a pause.
 inline double find_line_start(const Ref<Speech>& speech) {
     return speech->start - speech->skip;
 }
 
-/// Return how long all of it takes, seconds, with what was said before a pause and what was cut off.
+/// Return how many seconds all of a speech takes, with the part before a pause and the part that was cut off.
 inline double measure_line(const Ref<Speech>& speech) {
     return !speech->length.has_value() ? speech->end - items::find_line_start(speech) : *speech->length;
 }
 
-/// Return the speech, ending no later than `at`; how long it would have been is remembered.
+/// Return the speech, ending no later than `at`; it remembers its full length.
 inline Ref<Speech> cut(const Ref<Speech>& speech, double at) {
     return speech->end <= at
         ? speech
@@ -196,8 +196,8 @@ inline Ref<Speech> cut(const Ref<Speech>& speech, double at) {
         );
 }
 
-/// Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, with
-/// what is said behind it under its id; a lesser one is not said.
+/// Return speeches, given in order, without overlaps: one of equal or higher importance cuts the running one, with its
+/// later pieces; a less important one is dropped.
 inline List<Ref<Speech>> apart(const List<Ref<Speech>>& speeches) {
     List<Ref<Speech>> out;
     Map<std::string, double> ends; // when what was cut would have ended
@@ -236,7 +236,7 @@ inline List<Ref<Speech>> apart(const List<Ref<Speech>>& speeches) {
     return out;
 }
 
-/// Return a text that comes while another one of its id is said: it is said after that. said: in order.
+/// Return a text moved to after another one of its id that is being said. said: in order.
 inline Ref<Speech> behind(const List<Ref<Speech>>& said, const Ref<Speech>& new_, double now) {
     if (new_->timing != nullptr || new_->line.has_value() || new_->start > now) {
         return new_;
@@ -265,8 +265,8 @@ inline Ref<Speech> behind(const List<Ref<Speech>>& said, const Ref<Speech>& new_
         );
 }
 
-/// Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it keeps its start
-/// and what has been said of it. Only lines whose words or shapes were told with their times do.
+/// Return a line as the continuation of the last one with the same id, if that has begun by `now` or begins with it: it
+/// keeps the start and what has been said. Only lines whose words or shapes have times continue.
 inline Ref<Speech> going_on(const Ref<Speech>& old, const Ref<Speech>& new_, double now) {
     if (old == nullptr || old->timing == nullptr || new_->timing == nullptr || old->length.has_value()) {
         return new_;
@@ -303,7 +303,7 @@ inline Ref<Speech> going_on(const Ref<Speech>& old, const Ref<Speech>& new_, dou
     );
 }
 
-/// Return a text with the times its letters tell, so that what comes of it later can be added.
+/// Return a text with times estimated from its letters, so that later pieces can be added.
 inline Ref<Speech> pace_speech(const Ref<Alphabet>& alphabet, const Ref<Speech>& new_) {
     Ref<LineTiming> timing = line_timing::pace_text(alphabet, new_->text, std::nullopt);
     double length = line_timing::timed_seconds(timing, line_timing::measure_text(alphabet, new_->text));
@@ -322,7 +322,7 @@ inline Ref<Speech> pace_speech(const Ref<Alphabet>& alphabet, const Ref<Speech>&
     );
 }
 
-/// Return a line with a text behind what was told of it. told, more: their words.
+/// Return a line with a text after its known words. told, more: the words of both.
 inline Ref<Speech> _behind_words(
     const Ref<Speech>& old,
     const Ref<LineTiming>& told,
@@ -354,7 +354,7 @@ inline Ref<Speech> _behind_words(
     );
 }
 
-/// Whether two tracks' looks are the same; so for the others below.
+/// Return whether the looks of two tracks are the same. The functions below compare other items.
 inline bool alike_looks(const List<Ref<LookAt>>& one, const List<Ref<LookAt>>& other) {
     bool holds = lang::len(one) == lang::len(other);
     if (holds) {

@@ -1,4 +1,5 @@
-// A lane of events in time, drawn one after another: never changed, extended at the end, forgotten at the front.
+// A lane of events in time, drawn one after another. It never changes: it is extended at the end and forgotten at the
+// front.
 //
 // Translated from metagraph/playback/life/lane.py; change that, and translate anew.
 #pragma once
@@ -9,8 +10,8 @@ namespace metagraph {
 
 struct Lane;
 
-/// times: when events begin, ascending, seconds. rows: what each event is. first: number of the first event that is
-/// still kept. width: how many numbers a row has.
+/// times: when events begin, ascending, seconds. rows: the values of each event. first: number of the first event that
+/// is still kept. width: how many numbers a row has.
 struct Lane : std::enable_shared_from_this<Lane> {
     List<double> times;
     List<List<double>> rows;
@@ -28,13 +29,13 @@ struct Lane : std::enable_shared_from_this<Lane> {
     /// The number of the event to be drawn next.
     int next() const;
 
-    /// Return the lane with only what begins before a time.
+    /// Return the lane with only the events that begin before a time.
     Ref<Lane> until(double seconds) const;
 
     /// Return the lane with later events.
     Ref<Lane> plus(const List<double>& times, const List<List<double>>& rows) const;
 
-    /// Return the lane without what neither goes on at `seconds` nor comes later; `before`: how many more are kept.
+    /// Return the lane without events that are over at `seconds`; `before`: how many of those to keep.
     Ref<Lane> since(double seconds, int before = 1) const;
 };
 

@@ -1,5 +1,5 @@
-// Planning one layer on: what was planned for later is taken back to its meta actions, merged with new requests, placed
-// and performed again (Borer et al., section 6).
+// Extend the plan of one layer: the later part of the plan is turned back into its meta actions, merged with new
+// requests, placed and performed again (Borer et al., section 6).
 //
 // Translated from metagraph/playback/planning/layer_planning.py; change that, and translate anew.
 #pragma once
@@ -49,8 +49,8 @@ inline std::string _begin(
 
 /// A layer placed in time, not yet performed.
 ///
-/// able: whether the layer can perform at all. done: meta actions that were performed before. placed: those to be
-/// performed, in order; what a model wrote among them is performed as its mode says. reports: what was told so far.
+/// able: whether the layer can perform at all. done: meta actions that were performed before. placed: those to perform,
+/// in order; those that a model wrote are performed as the mode says. reports: the reports so far.
 struct LayerDraft {
     std::string layer;
     Ref<Performer> performer;
@@ -83,7 +83,7 @@ struct LayerDraft {
             cursor(std::move(cursor_)),
             written(std::move(written_)) {}
 
-    /// Return the layer's plan, with those of its meta actions performed that are given; `reports` then tells all.
+    /// Return the layer's plan with the given meta actions performed; `reports` is then complete.
     Ref<LayerPlan> performed(const List<Ref<MetaAction>>& metas, double end);
 };
 
@@ -103,12 +103,12 @@ inline Ref<LayerPlan> LayerDraft::performed(const List<Ref<MetaAction>>& metas, 
 
 namespace layer_planning {
 
-/// Return a layer's plan taken back to `now`, with what is asked for placed anew.
+/// Return a layer's plan cut at `now`, with the requests placed again.
 ///
-/// chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so
-/// far. fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn; stopped: those
-/// withdrawn, whose running action is left. stance: which the layer would begin in. moods: what it is in the mood for,
-/// and when.
+/// chain: the model that writes when there are no requests, or None. kinds: the kinds of actions that the layer has.
+/// told: reports of the plan so far. fresh: new requests, of all layers. replaced: ids of requests that are replaced or
+/// withdrawn; stopped: those withdrawn, whose running action is left. stance: the stance in which the layer would
+/// begin. moods: the mood over time.
 inline Ref<LayerDraft> draft(
     const Ref<Project>& project,
     const Ref<MetaGraph>& graph,
@@ -175,7 +175,7 @@ inline Ref<LayerDraft> draft(
     }
     List<Ref<MetaAction>> future;
     Map<std::string, List<double>> planned; // again: when those of a request start
-    Set<std::string> judged; // those whose lateness is told by what is performed
+    Set<std::string> judged; // those whose lateness is known once they are performed
     for (const auto& meta : old->metas) {
         if (lang::contains(again, meta->request->id) || lang::contains(served, meta->request->id)) {
             continue;
@@ -191,7 +191,7 @@ inline Ref<LayerDraft> draft(
             );
         }
     }
-    // What was told about time still holds; the rest will be told again by those that are planned again.
+    // Reports about time still hold; those that are planned again report the rest.
     List<Ref<MetaAction>> done;
     for (const auto& meta2 : old->metas) {
         if (!lang::contains(again, meta2->request->id)
@@ -268,7 +268,7 @@ inline Ref<LayerDraft> draft(
     return lang::made<LayerDraft>(layer, performer, true, done, placed, every, old->past, cursor, written);
 }
 
-/// Return a request that may begin as much earlier as its preparation takes longer in its mood.
+/// Return a request that may begin earlier, by the extra time that its preparation takes in its mood.
 inline Ref<MetaRequest> in_time(const Ref<MetaRequest>& request, const Ref<Moods>& moods) {
     if (!request->stroke.has_value()) {
         return request;
@@ -301,7 +301,8 @@ inline Ref<MetaRequest> in_time(const Ref<MetaRequest>& request, const Ref<Moods
     );
 }
 
-/// Return a request with the window it may use; where its stroke is judged, the moment it is wanted at.
+/// Return a request as a meta action with the window it may use; if its stroke is judged, with the moment of the
+/// stroke.
 inline Ref<MetaAction> meta_of(const Ref<MetaRequest>& request) {
     if (request->late.has_value() && request->stroke.has_value()) {
         return lang::made<MetaAction>(request, *request->stroke, *request->stroke + cue_shapes::FITS);
@@ -313,8 +314,8 @@ inline Ref<MetaAction> meta_of(const Ref<MetaRequest>& request) {
     return lang::made<MetaAction>(request, request->start, request->start + length);
 }
 
-/// Return the stance a layer begins in: as it did before, as asked, the graph's start, or the first that has a loop; ""
-/// for none.
+/// Return the stance in which a layer begins: that of the plan before, the given one, the graph's start, or the first
+/// that has a loop; "" for none.
 inline std::string _begin(
     const Ref<MetaGraph>& graph,
     const Ref<LayerPlan>& old,

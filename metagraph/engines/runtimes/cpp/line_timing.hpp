@@ -1,5 +1,5 @@
-// When a line's words and mouth shapes come, as a synthesiser tells them: the mouth follows them and is shut between.
-// Times are seconds from the line's start.
+// The times of a line's words and mouth shapes, as a synthesiser reports them: the mouth follows them and is shut in
+// between. Times are seconds from the line's start.
 //
 // Translated from metagraph/playback/life/line_timing.py; change that, and translate anew.
 #pragma once
@@ -17,13 +17,12 @@ struct LineTiming;
 
 namespace line_timing {
 
-inline constexpr double WORD = 0.15; // seconds a word takes of which only the start is told, if nothing comes before
-inline constexpr double LETTER = 0.07; // and for each of its letters
-inline constexpr double SHAPE = 0.2; // seconds the last shape of a line stays
+inline constexpr double WORD = 0.15; // seconds that a word takes if only its start is known and nothing comes sooner
+inline constexpr double LETTER = 0.07; // and seconds for each of its letters
+inline constexpr double SHAPE = 0.2; // seconds for which the last shape of a line stays
 inline constexpr double FARTHEST = 3600.0; // seconds of a line
-// seconds before the last shape of a line, from which on a shape that is told later belongs to it
-inline constexpr double AGAIN = 0.1;
-inline constexpr double SLACK = 0.05; // seconds by which times may be past the end they are told with
+inline constexpr double AGAIN = 0.1; // a later piece belongs to a line from this many seconds before its last shape on
+inline constexpr double SLACK = 0.05; // seconds by which times may exceed the given end
 // What each viseme of a set shows of the mouth shapes, and how fully.
 inline const Map<std::string, std::string> OCULUS = Map<std::string, std::string>{
     {"sil", "sil"},
@@ -155,7 +154,7 @@ inline bool _told(const List<Ref<VisemeMark>>& marks, const Ref<VisemeMark>& mar
 
 }  // namespace line_timing
 
-/// A word from `start` to `end`; None where only its start is told.
+/// A word from `start` to `end`; `end` is None if only its start is known.
 struct SpokenWord {
     std::string text;
     double start;
@@ -165,8 +164,8 @@ struct SpokenWord {
         : text(std::move(text_)), start(start_), end(end_) {}
 };
 
-/// A mouth shape from `at` until the next mark of a later time. viseme: its name in the set it is of, of `VISEMES` in a
-/// `LineTiming`. weight: how fully it is made, 0..1.
+/// A mouth shape from `at` until the next mark of a later time. viseme: its name in its set; in a `LineTiming`, one of
+/// `VISEMES`. weight: how fully it is made, 0..1.
 struct VisemeMark {
     double at;
     std::string viseme;
@@ -176,8 +175,8 @@ struct VisemeMark {
         : at(at_), viseme(std::move(viseme_)), weight(weight_) {}
 };
 
-/// A line's words and mouth shapes, each by time. later: seconds by which what is told later is said later, because
-/// something came after its time. paced: whether nobody told the times, and they follow from the letters.
+/// A line's words and mouth shapes, each by time. later: seconds by which later pieces are delayed, because one came
+/// after its time. paced: whether the times are estimated from the letters.
 struct LineTiming {
     List<Ref<SpokenWord>> words;
     List<Ref<VisemeMark>> marks;
@@ -195,7 +194,7 @@ struct LineTiming {
 
 namespace line_timing {
 
-/// Whether two lines' words and shapes come alike.
+/// Return whether two lines have the same words and shapes at the same times.
 inline bool alike_timings(const Ref<LineTiming>& one, const Ref<LineTiming>& other) {
     if (one == nullptr || other == nullptr) {
         return one == nullptr && other == nullptr;
@@ -239,7 +238,7 @@ inline Map<std::string, std::string> _table(const std::string& name) {
     return name == "arkit" ? line_timing::ARKIT : line_timing::AZURE;
 }
 
-/// Return the first set that has all of some visemes, "" where none has.
+/// Return the first set that has all of the visemes, "" if none has.
 inline std::string set_of(const List<Ref<VisemeMark>>& marks) {
     for (const auto& name : line_timing::SETS) {
         bool are_all = true;
@@ -256,10 +255,9 @@ inline std::string set_of(const List<Ref<VisemeMark>>& marks) {
     return "";
 }
 
-/// Return what is wrong with a line's times, where, and what would be right; "" where nothing is.
+/// Return what is wrong with a line's times, where, and what would be right; "" if nothing is wrong.
 ///
-/// name: of the set the visemes are of, "" for what their names tell. duration: seconds of its sound, None where that
-/// is not told.
+/// name: of the visemes' set, "" to find it by their names. duration: seconds of its sound, None if unknown.
 inline std::string wrong_in(
     const List<Ref<SpokenWord>>& words,
     const List<Ref<VisemeMark>>& marks,
@@ -363,7 +361,7 @@ inline std::string _out_of_range(double seconds) {
     );
 }
 
-/// Return the timing that words and visemes in which nothing is wrong make. name: as for `wrong_in`.
+/// Return the timing of words and visemes that are valid. name: as for `wrong_in`.
 inline Ref<LineTiming> timing_of(
     const Ref<Alphabet>& alphabet,
     const List<Ref<SpokenWord>>& words,
@@ -403,7 +401,7 @@ inline Ref<LineTiming> timing_of(
     return lang::made<LineTiming>(said, shown);
 }
 
-/// Return how long a text takes where more of it may come before or after, seconds.
+/// Return how many seconds a text takes as a part of a longer text.
 inline double measure_text(const Ref<Alphabet>& alphabet, const std::string& text) {
     double out = 0.0;
     for (const auto& [word, pause] : graphemes::split_words(alphabet, text)) {
@@ -412,8 +410,8 @@ inline double measure_text(const Ref<Alphabet>& alphabet, const std::string& tex
     return out;
 }
 
-/// Return the words of a text, one after the other. seconds: how long all of it takes, None for as long as its letters
-/// tell.
+/// Return the words of a text, one after the other. seconds: how long all of it takes, None to estimate it from the
+/// letters.
 inline Ref<LineTiming> pace_text(
     const Ref<Alphabet>& alphabet,
     const std::string& text,
@@ -441,8 +439,8 @@ inline double _measure_word(const Ref<Alphabet>& alphabet, const std::string& wo
     return lang::sum(found) / graphemes::PACE;
 }
 
-/// Return the words that letters make whose times are told one by one: a blank parts words, and so does each letter
-/// that is a syllable.
+/// Return the words of letters that have a time each. Blanks separate words, and so does each letter that is a
+/// syllable.
 inline List<Ref<SpokenWord>> join_letters(const Ref<Alphabet>& alphabet, const List<Ref<SpokenWord>>& letters) {
     List<Ref<SpokenWord>> out;
     bool parted = true;
@@ -476,7 +474,7 @@ inline std::string told_text(const Ref<LineTiming>& timing) {
     return lang::joined(found, " ");
 }
 
-/// Return how long a line lasts, to whole rows of a mouth's track, so that what is added to it later moves nothing.
+/// Return how long a line lasts, rounded to whole rows of the mouth's track, so that later additions move nothing.
 /// duration: of its sound, None for as long as its words and shapes need.
 inline double timed_seconds(const Ref<LineTiming>& timing, const std::optional<double>& duration) {
     double last = line_timing::_end_of(timing);
@@ -486,8 +484,8 @@ inline double timed_seconds(const Ref<LineTiming>& timing, const std::optional<d
         * mouth::STEP;
 }
 
-/// Return the mouth's pieces and the syllables of a line's words and shapes: shapes are the mouth's where any are told,
-/// words those of gestures and blinks.
+/// Return the mouth's pieces and the syllables of a line's words and shapes: the mouth follows the shapes if there are
+/// any; gestures and blinks follow the words.
 inline Ref<Spelled> timed_sounds(const Ref<Alphabet>& alphabet, const Ref<LineTiming>& timing) {
     Ref<Spelled> out = lang::made<Spelled>();
     for (const auto& word : timing->words) {
@@ -522,7 +520,7 @@ inline Ref<Spelled> timed_sounds(const Ref<Alphabet>& alphabet, const Ref<LineTi
     return shown;
 }
 
-/// Return when each mark is over: several at one time are the mouth's together.
+/// Return when each mark ends: marks at the same time show together.
 inline List<double> _ends(const List<Ref<VisemeMark>>& marks) {
     List<double> out;
     double end = 0.0;
@@ -537,8 +535,8 @@ inline List<double> _ends(const List<Ref<VisemeMark>>& marks) {
     return lang::backwards(out);
 }
 
-/// Return whether what is told of a line after its end is of the same line: it begins after the last word or shape that
-/// was told, or tells all again with more behind it. Else somebody says something else under the same id.
+/// Return whether a piece that comes after the end of a line belongs to the same line: it begins after the last known
+/// word or shape, or repeats all with more behind it. Otherwise it is something else under the same id.
 inline bool tells_on(const Ref<LineTiming>& old, const Ref<LineTiming>& new_) {
     if (lang::len(new_->words) > 0 && lang::len(old->words) > 0) {
         Ref<SpokenWord> first = lang::at(new_->words, 0);
@@ -578,9 +576,9 @@ inline Ref<LineTiming> shifted(const Ref<LineTiming>& timing, double by) {
     return lang::made<LineTiming>(words, found);
 }
 
-/// Return what is told of a line later, when it is said: a piece that counts its times from its own beginning comes
-/// after what was told, and what comes after its time is said at once, and so is what follows it. said: seconds of the
-/// line that are over.
+/// Return a later piece of a line with the times at which it is said. A piece that counts from its own beginning
+/// follows the earlier pieces. A piece that comes too late is said at once, and everything after it is delayed. said:
+/// seconds of the line that are over.
 inline Ref<LineTiming> place_told(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said) {
     double end = line_timing::_end_of(old);
     if (line_timing::restarts(old, new_, said)) {
@@ -630,8 +628,8 @@ inline Ref<LineTiming> place_told(const Ref<LineTiming>& old, const Ref<LineTimi
     );
 }
 
-/// Return whether what is told of a line is a piece of its own, which begins at 0: it lies where the line begins, and
-/// does not tell that again.
+/// Return whether a piece of a line counts its times from 0 again: it lies at the beginning of the line, but does not
+/// repeat it.
 inline bool restarts(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said) {
     bool again{};
     if (lang::len(old->words) > 0 && lang::len(new_->words) > 0) {
@@ -670,7 +668,7 @@ inline double _end(const Ref<SpokenWord>& word) {
     return !word->end.has_value() ? word->start : *word->end;
 }
 
-/// Return when the last word or shape is over.
+/// Return when the last word or shape ends.
 inline double _end_of(const Ref<LineTiming>& timing) {
     List<double> found;
     for (const auto& word : timing->words) {
@@ -684,8 +682,8 @@ inline double _end_of(const Ref<LineTiming>& timing) {
     return end;
 }
 
-/// Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the
-/// new begins; of a word or a shape that has begun meanwhile the rest is said.
+/// Return a line's timing with a later piece: the old timing stays up to `said` seconds, and up to the beginning of the
+/// new piece. Of a word or shape that has begun meanwhile, the rest is said.
 inline Ref<LineTiming> extended(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said) {
     List<Ref<SpokenWord>> words = old->words;
     List<double> found;

@@ -1,9 +1,9 @@
-// The Markov model that performs when nobody asks for anything: a first-order chain over (limb, kind).
+// The Markov model that performs when there are no requests: a first-order chain over (limb, kind).
 //
 // The arms matrix is the paper's (Borer et al., figure 11), learned from annotated casual conversation. Body and head
 // have no published matrix; theirs are ours, shaped on the paper's labels: the head nods and now and then changes its
-// tilt, the body mostly rests, shifts and fidgets. So are the shares of what is performed while one is said to idle,
-// listen or talk: hands gesture with one's own speech, the head nods at the other's.
+// tilt, the body mostly rests, shifts and fidgets. The shares of what is performed in the modes idle, listening and
+// talking are ours, too: the hands gesture with the character's own speech, and the head nods at the other's.
 //
 // Translated from metagraph/playback/planning/markov.py; change that, and translate anew.
 #pragma once
@@ -48,11 +48,11 @@ namespace markov {
 /// left out.
 ///
 /// Rests are log-normal about the mean gap (`rest_length`): most are short, some long, as people's are. Windows are as
-/// `length` says. kinds: what the graph has; states of other kinds are passed over, so that half-filled graphs perform
-/// too.
+/// `length` says. kinds: those that the graph has; states of other kinds are passed over, so that half-filled graphs
+/// perform, too.
 ///
-/// Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives
-/// bit for bit what writing in one go does. A chain that cannot leave a row of zeros starts again from any state.
+/// Each draw is keyed by the meta action's number. So a longer horizon only appends, and continuing from a cursor gives
+/// bit for bit the same as writing in one go. After a row of zeros, the chain starts again from any state.
 inline std::tuple<List<Ref<MetaAction>>, Ref<Cursor>> write(
     const Ref<Markov>& chain,
     std::uint32_t seed,
@@ -118,8 +118,8 @@ inline std::tuple<List<Ref<MetaAction>>, Ref<Cursor>> write(
     return std::tuple<List<Ref<MetaAction>>, Ref<Cursor>>{out, lang::made<Cursor>(number, state, time)};
 }
 
-/// Return how likely each state is that may come after a state (-1: before the first), by its place; any that may be
-/// where nothing leads on.
+/// Return the probability of each state that may follow a state (-1: before the first), by its index; of all allowed
+/// states if none may follow.
 inline Map<std::string, double> _row(const Ref<Markov>& chain, int state, const List<double>& open_to) {
     List<double> row = open_to;
     if (0 <= state && state < lang::len(row)) {
@@ -151,8 +151,8 @@ inline Map<std::string, double> _row(const Ref<Markov>& chain, int state, const 
     return found2;
 }
 
-/// Whether something the model wrote is performed while somebody idles, listens or talks (`Markov.modes`). What is left
-/// out leaves the rest as it was, so that it does not matter when a mode became known.
+/// Return whether something that the model wrote is performed in a mode (`Markov.modes`). What is left out does not
+/// change the rest, so it does not matter when a mode became known.
 inline bool performs(
     const Ref<Markov>& chain,
     std::uint32_t seed,
@@ -168,7 +168,7 @@ inline bool performs(
     return share >= 1 || choice::uniform(seed, List<std::string>{meta->request->id, "mode"}) < share;
 }
 
-/// Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths; else
+/// Return how many seconds a meta action of a key lasts: uniform from 1 to 3 if the model has no lengths; else
 /// log-normal with the state's mean and standard deviation.
 inline double length(const Ref<Markov>& chain, int state, std::uint32_t key) {
     if (lang::len(chain->lengths) == 0) {

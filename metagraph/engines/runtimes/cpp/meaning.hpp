@@ -1,4 +1,4 @@
-// What asks mean: requests of the layers, and what lasts (Borer et al., section 6 and figure 5).
+// The meaning of asks: requests of the layers, and lasting items (Borer et al., section 6 and figure 5).
 //
 // Translated from metagraph/playback/planning/meaning.py; change that, and translate anew.
 #pragma once
@@ -34,8 +34,8 @@ inline void understood(const Ref<Meaning>& whole, const Ref<PlainAsk>& ask, doub
 
 }  // namespace meaning
 
-/// An ask with every field that any has; `do` says which count. line: id; said: that line, None where there is none
-/// such. text: what is said, or a block of BML. timing: when its words and shapes come.
+/// An ask with the fields of all kinds of asks; `do` says which of them count. line: id; said: that line, None if there
+/// is none. text: the words, or a block of BML. timing: the times of its words and shapes.
 struct PlainAsk {
     std::string do_;
     std::string id;
@@ -138,8 +138,8 @@ struct PlainAsk {
             more(more_) {}
 };
 
-/// A line of dialogue. seconds: how long it is, None where nobody knows. asks: what it asks for while it is said, in
-/// seconds from its start. valence, arousal, intensity: of the mood it is said in.
+/// A line of dialogue. seconds: its length, None if unknown. asks: its own requests, in seconds from its start.
+/// valence, arousal, intensity: of the mood it is said in.
 struct SaidLine {
     std::string text;
     std::optional<double> seconds;
@@ -164,7 +164,7 @@ struct SaidLine {
             intensity(intensity_) {}
 };
 
-/// A block of BML that is asked for: what it says becomes asks `<id>.1`, `<id>.2`, ...
+/// A requested block of BML: its behaviours become asks `<id>.1`, `<id>.2`, ...
 struct AskedBlock {
     std::string id;
     double at;
@@ -175,8 +175,8 @@ struct AskedBlock {
         : id(std::move(id_)), at(at_), priority(priority_), text(std::move(text_)) {}
 };
 
-/// What an ask does to what is said. do: "interrupt", "pause", "resume" or "finish". what: the id of what is said, ""
-/// for all of it.
+/// An ask that steers speech. do: "interrupt", "pause", "resume" or "finish". what: the id of the speech, "" for all
+/// speech.
 struct SteeringAsk {
     std::string do_;
     std::string id;
@@ -187,10 +187,10 @@ struct SteeringAsk {
         : do_(std::move(do_)), id(std::move(id_)), what(std::move(what_)), priority(priority_) {}
 };
 
-/// What asks mean, so far. graphs: of the layers, in their order. withdrawn: ids taken back; every one where it holds
-/// "". steered: what is done to what is said, in turn. unknown: what an ask names that is not there: "action", "stance"
-/// or "line". Speeches may overlap. fixed: seconds before which no gesture can begin that a line asks for, though the
-/// line itself may.
+/// The meaning of asks, so far. graphs: of the layers, in their order. withdrawn: ids taken back; "" stands for all.
+/// steered: the asks that steer speech, in order. unknown: the kind of thing that an ask names and that does not exist:
+/// "action", "stance" or "line". Speeches may overlap. fixed: the earliest second at which a gesture of a line can
+/// begin; the line itself may begin earlier.
 struct Meaning {
     Ref<Project> project;
     List<Ref<MetaGraph>> graphs;
@@ -247,26 +247,26 @@ struct Meaning {
             unknown(std::move(unknown_)),
             fixed(fixed_) {}
 
-    /// Return what lasts.
+    /// Return the track of lasting items.
     Ref<Track> track();
 
-    /// Take what others mean, too.
+    /// Add the meaning of other asks.
     void take(const Ref<Meaning>& other);
 
-    /// Tell that an ask was not understood.
+    /// Report that an ask was not understood.
     void refuse(const std::string& ident, const std::string& why, const std::optional<std::string>& layer, double at);
 
     /// Return a layer's graph.
     Ref<MetaGraph> graph_of(const std::string& layer);
 
-    /// Add what an ask means; return why it can mean nothing, "" where it does. ident, at, priority: its own, or what
-    /// the line has made of them that asks for it. shift: seconds that line begins at, else 0.
+    /// Add the meaning of an ask; return why it has none, "" if it has one. ident, at, priority: its own, or as the
+    /// line changed them that it belongs to. shift: the second at which that line begins, else 0.
     std::string add(const Ref<PlainAsk>& ask, const std::string& ident, double at, int priority, double shift);
 
-    /// Nods are gestures tagged so; where none is, the likeliest of those called so, whatever stance it needs.
+    /// Nods are gestures with that tag; if there is none, the likeliest one with that name, whatever stance it needs.
     std::string head(const Ref<PlainAsk>& ask, const std::string& ident, double at, int priority);
 
-    /// Something said: a line, with what it asks for meanwhile, or other words.
+    /// Say a line, with its own requests, or other words.
     std::string say(const Ref<PlainAsk>& ask, const std::string& ident, double at, int priority);
 };
 
@@ -620,8 +620,7 @@ inline std::string Meaning::say(const Ref<PlainAsk>& ask, const std::string& ide
 
 namespace meaning {
 
-/// Take what an ask means, or refuse all of it. now: when it begins where it does not say; soon: when it is said,
-/// likewise.
+/// Add the meaning of an ask, or refuse all of it. now: when it begins if it does not say; soon: the same for speech.
 inline void understood(const Ref<Meaning>& whole, const Ref<PlainAsk>& ask, double now, double soon) {
     Ref<Meaning> one = lang::made<Meaning>(
         whole->project,

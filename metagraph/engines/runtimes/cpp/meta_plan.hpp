@@ -1,4 +1,4 @@
-// Requests, meta actions and plans: what the planner takes and gives. All values; times are seconds.
+// Requests, meta actions and plans: what the planner takes and returns. All are values; times are seconds.
 //
 // Translated from metagraph/playback/plan.py; change that, and translate anew.
 #pragma once
@@ -26,16 +26,16 @@ inline const Set<std::string> TEMPORAL = Set<std::string>{"late", "cut", "resume
 
 }  // namespace meta_plan
 
-/// What an agent or animator asks for, at any level of abstraction.
+/// A request of an agent or animator, at any level of abstraction.
 ///
-/// id: unique; it keys the random draws. start: seconds. duration: how long the activity is wanted, None for one
+/// id: unique; it keys the random draws. start: seconds. duration: how long the activity should last, None for one
 /// action. action: id of a specific action. tags: all of them must be on the action. limb: which arm. stance: id of the
-/// stance to go to (kind "transition"). priority: higher wins. resume: whether, when something more important cuts it,
-/// its remainder goes on afterwards. stroke: when a gesture's stroke should come; `start` is then the earliest it may
-/// begin. hold: seconds its hold should last, None for as long as it was made. prepare: whether its preparation plays.
-/// among: ids of the only actions it may be, any where empty. late: by how many seconds its stroke, or where none is
-/// asked for its start, may come late, 0 for on time or not at all; None for as late as the settings allow. valence,
-/// arousal, intensity: of the mood it is played in, as in `mood.Mood`; None for as it is then.
+/// stance to go to (kind "transition"). priority: higher wins. resume: whether the remainder plays afterwards if a more
+/// important request cuts it. stroke: when a gesture's stroke should come; `start` is then the earliest it may begin.
+/// hold: seconds that its hold should last, None for its length in the clip. prepare: whether its preparation plays.
+/// among: ids of the only actions it may be; empty for any. late: by how many seconds its stroke may come late, or its
+/// start if it has no stroke; 0 for on time or not at all, None for as late as the settings allow. valence, arousal,
+/// intensity: the mood it is played in, as in `mood.Mood`; None for the mood at that time.
 struct MetaRequest {
     std::string id;
     std::string layer;
@@ -99,8 +99,8 @@ struct MetaRequest {
             intensity(intensity_) {}
 };
 
-/// Where writing stands: before meta action `number`, in state number `state` (-1: none yet), which ended at `time`
-/// seconds.
+/// Where writing continues: before meta action `number`, after state number `state` (-1: none yet), which ended at
+/// `time` seconds.
 struct Cursor {
     int number;
     int state;
@@ -110,8 +110,8 @@ struct Cursor {
         : number(number_), state(state_), time(time_) {}
 };
 
-/// A request placed in time: `start`..`end` is the window it may use. written: by the Markov model, not asked for.
-/// part: 0 for the request itself, n for its n-th remainder after a cut.
+/// A request placed in time: `start`..`end` is the window it may use. written: whether the Markov model wrote it,
+/// instead of a request. part: 0 for the request itself, n for its n-th remainder after a cut.
 struct MetaAction {
     Ref<MetaRequest> request;
     double start;
@@ -122,20 +122,20 @@ struct MetaAction {
     MetaAction(Ref<MetaRequest> request_, double start_, double end_, int part_ = 0, bool written_ = false)
         : request(std::move(request_)), start(start_), end(end_), part(part_), written(written_) {}
 
-    /// How important it is: its request's priority; what a model wrote gives way to all that is asked for.
+    /// Its importance: its request's priority. What a model wrote gives way to all requests.
     double rank() const;
 
-    /// What keys this meta action's random draws.
+    /// The key of this meta action's random draws.
     std::string key() const;
 };
 
 /// One action in the plan. It plays its clip from `entry` on during `start`..`end`, at `tempo` times its own speed but
 /// for its hold.
 ///
-/// hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched.
-/// blend_in, blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in.
-/// meta: key of the meta action it realises. extent: how large it is played, a factor of its turns away from the
-/// stance. cycle_from, cycle_to: clip seconds between which it repeats; 0, 0 where it plays once.
+/// hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 if it is not stretched. blend_in,
+/// blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of
+/// the meta action it realises. extent: how large it is played, a factor of its turns away from the stance. cycle_from,
+/// cycle_to: clip seconds between which it repeats; 0, 0 if it plays once.
 struct Cue {
     Ref<Action> action;
     double start;
@@ -189,7 +189,7 @@ struct Cue {
             cycle_from(cycle_from_),
             cycle_to(cycle_to_) {}
 
-    /// Whether it plays a cycle again and again.
+    /// Whether it repeats a cycle.
     bool repeats() const;
 };
 
@@ -207,9 +207,9 @@ struct Rest {
         : stance(std::move(stance_)), action(std::move(action_)), start(start_), fade_start(fade_start_), fade(fade_) {}
 };
 
-/// What became of a meta action that was not simply played as asked. played: whether something of it still plays. late:
-/// by how many seconds it comes late, or would have come, where it said how late it may. by: key of the meta action
-/// whose action serves it, too.
+/// The result of a meta action that does not play exactly as requested. played: whether a part of it still plays. late:
+/// by how many seconds it comes late, or would have come, if it said how late it may. by: key of the meta action whose
+/// action serves it, too.
 struct Report {
     std::string request;
     std::string outcome;
@@ -243,9 +243,9 @@ struct Report {
             by(std::move(by_)) {}
 };
 
-/// What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses: how often
-/// each action was used. recent: the actions used last, by `remembering.node`, the latest at the end. ended: when each
-/// ended last.
+/// What further planning needs from forgotten cues. free: when the last one ended; stance: in which stance. uses: how
+/// often each action was used. recent: the actions used last, by `remembering.node`, the latest at the end. ended: when
+/// each ended last.
 struct Past {
     double free;
     std::string stance;
@@ -269,9 +269,9 @@ struct Past {
 
 /// cues never overlap and ascend; rests ascend by fade_start, the first covering everything before.
 ///
-/// past: what came before the first cue, where that was forgotten. cursor: where the Markov model writes on. written:
-/// what it wrote for later, as it wrote it: each extension fits it in anew, so that it does not matter when it was
-/// first seen.
+/// past: what came before the first cue, if that was forgotten. cursor: where the Markov model continues to write.
+/// written: what it wrote for later, unchanged: each extension fits it in again, so that it does not matter when it was
+/// written.
 struct LayerPlan {
     std::string layer;
     List<Ref<MetaAction>> metas;

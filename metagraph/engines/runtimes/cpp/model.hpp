@@ -20,11 +20,11 @@ struct Settings;
 ///
 /// `start` and `end` bound the part that plays; an `end` of None is the clip's end. `blend_in` and `blend_out` are the
 /// seconds of blending from and to the stance, inside that part. For a looping stance, `blend_in` is the overlap at the
-/// loop's seam. `loop` repeats the part. From `earliest_exit` on the action may be left; None plays it through.
-/// `stroke` is its most telling moment. `ready`, `stroke_end` and `relax` are the ends of a gesture's preparation,
-/// stroke and hold; its retraction ends with the action. None takes the times found from the motion
-/// (`playback.timing.phases`). `repeat` is for how many seconds a gesture or fidget repeats its part where nobody says
-/// how long, as near as a whole number of times comes; 0 plays it once.
+/// loop's seam. `loop` repeats the part. From `earliest_exit` on, the next action may start; None plays the action to
+/// its end. `stroke` is its most expressive moment. `ready`, `stroke_end` and `relax` are the ends of a gesture's
+/// preparation, stroke and hold; its retraction ends with the action. None takes the times found from the motion
+/// (`playback.timing.phases`). `repeat` is the number of seconds for which a gesture or fidget repeats its part if no
+/// request says how long; it plays the nearest whole number of times. 0 plays it once.
 struct Timing {
     double start;
     std::optional<double> end;
@@ -70,11 +70,11 @@ struct Timing {
 /// have an `end_stance`. `limb` is the arm it needs; the other arm stays in the stance. `joints` names the only joints
 /// it moves; empty means all. `joint_weights` has pairs of a name and a weight, above 0 and below 1, for joints that it
 /// moves in part; the rest of their motion is the stance's. `tags` are free words, "positive" and "negative" among
-/// them. `likelihood` is relative, above 0. `cooldown` is the number of seconds after its end in which it is not drawn
-/// again. `spacing` is the number of other actions of its kind and stance that are drawn before it may be drawn again;
-/// None follows the setting `never_twice`. `prominence` says how much it stands out, 0..1; None for as its motion and
-/// name say. `contacts` are the times when its hands stay on the body. `clip_name` and `clip_sha256` say which clip it
-/// was made of if that is not the clip it has now, else "" (see `formats.clip_identity`).
+/// them. `likelihood` is relative, above 0. `cooldown` is the number of seconds after its end in which it is not chosen
+/// again. `spacing` is the number of other actions of its kind and stance that are chosen before it may be chosen
+/// again; None follows the setting `never_twice`. `prominence` says how much it stands out, 0..1; None takes what its
+/// motion and name say. `contacts` are the times when its hands stay on the body. `clip_name` and `clip_sha256` name
+/// the clip it was made from if it has another clip now, else "" (see `formats.clip_identity`).
 struct Action {
     std::string id;
     std::string clip;
@@ -147,11 +147,11 @@ struct Stance {
         : id(std::move(id_)), layer(std::move(layer_)), name(std::move(name_)) {}
 };
 
-/// A first-order model over (limb, kind) that writes meta actions when there are no requests (Borer et al., 7.3).
+/// A first-order model over (limb, kind). It writes meta actions when there are no requests (Borer et al., 7.3).
 ///
 /// `matrix` has rows of probabilities, each of which sums to 1. `gap` is the mean rest between two actions, in seconds.
-/// `positive` and `negative` are the shares of gestures that ask for that tag, if tags are not part of the states.
-/// `tags` has one text for each state, the tags it asks for with blanks between them; it is empty if tags are not part
+/// `positive` and `negative` are the shares of gestures that request that tag, if tags are not part of the states.
+/// `tags` has one text for each state: the tags it requests, with blanks between them; it is empty if tags are not part
 /// of the states. `lengths` has the mean and standard deviation of each state's actions, in seconds; it is empty if
 /// they are unknown. `modes` has one row for each mode, in the order of `words.MODES`: the shares, 0 to 1, of the
 /// written gestures, fidgets and transitions that are performed in that mode. Without the last two rows, thinking and
@@ -188,19 +188,19 @@ struct Markov {
             lengths(std::move(lengths_)),
             modes(std::move(modes_)) {}
 
-    /// Return the tags that a state asks for, "" for none.
+    /// Return the tags that a state requests, "" for none.
     std::string tag(int state) const;
 };
 
 /// The planner's constants.
 ///
 /// `alpha` says how quickly a used action becomes unlikely (4 in the paper). `seed` has 32 bits. With `never_twice`, an
-/// action is not played twice in a row if there is another. `shortest` is the least number of seconds for which the
-/// remainder of a cut meta action is kept. `wait` is how many seconds late a request may start. `memory` is the number
-/// of seconds after which a use no longer counts, 0 for never (as in the paper). `rest` is the least number of seconds
-/// in the stance between two actions of a layer. A running plan is not changed for the next `lookahead` seconds.
-/// `variety`, 0..4, multiplies the times of `planning.director`, so how seldom actions repeat and stances change; 0 for
-/// as often as in the paper.
+/// action is not played twice in a row if there is another. `shortest` is the minimum length, in seconds, of a
+/// remainder that is kept when a meta action is cut. `wait` is how many seconds late a request may start. `memory` is
+/// the number of seconds after which a use no longer counts, 0 for never (as in the paper). `rest` is the least number
+/// of seconds in the stance between two actions of a layer. A running plan is not changed for the next `lookahead`
+/// seconds. `variety`, 0..4, multiplies the times of `planning.director`, which decide how rarely actions repeat and
+/// stances change; 0 is as in the paper.
 struct Settings {
     double alpha;
     int seed;

@@ -1,18 +1,18 @@
 // How a mood shows: which actions become likelier, how large and fast they are played, and what it makes of breath,
 // blinks, gaze, posture and face.
 //
-// A mood is a point in Russell's circumplex (1980): valence, how pleasant, and arousal, how excited, both -1..1; beside
-// it an intensity, 0..2, 1 as made. Neutral (0, 0, 1) changes nothing, to the last digit: every factor is 1 and every
-// offset 0 there.
+// A mood is a point in Russell's circumplex (1980): valence, how pleasant, and arousal, how excited, both -1..1; with
+// it, an intensity, 0..2; 1 is normal. Neutral (0, 0, 1) changes nothing, to the last digit: every factor is 1 and
+// every offset is 0.
 //
 // What is known and followed here: arousal goes with the speed, acceleration and jerk of movements (Pollick et al.
 // 2001, of arms that knock and drink); elated joy and hot anger are expansive and full of movement, sadness and boredom
 // neither (Wallbott 1998); the sad walk slowly, with small movements and bowed heads (Roether et al. 2009). Anger and
-// fear lie close together here, at 99 and 116 degrees; people tell them apart by power (Fontaine et al. 2007). So of
-// unpleasant excitement the milder is anger here, the stronger fear: it draws back (Coulson 2004), the shoulders up and
-// the arms close. Faces follow the prototypes of FACS (Ekman and Friesen 1978): fear 1+2+4+5+20, anger 4+5+7+23, joy
-// 6+12, sadness 1+4+15. By how much - the numbers below - is ours, chosen so that every clip still looks as if it was
-// made so.
+// fear lie close together here, at 99 and 116 degrees; people tell them apart by power (Fontaine et al. 2007). So here,
+// mild unpleasant excitement is anger and strong unpleasant excitement is fear: the body draws back (Coulson 2004),
+// with the shoulders up and the arms close. Faces follow the prototypes of FACS (Ekman and Friesen 1978): fear
+// 1+2+4+5+20, anger 4+5+7+23, joy 6+12, sadness 1+4+15. The amounts (the numbers below) are ours, chosen so that every
+// clip still looks natural.
 //
 // Translated from metagraph/playback/planning/mood.py; change that, and translate anew.
 #pragma once
@@ -91,7 +91,7 @@ inline double shut_in(double blink, double lids);
 
 }  // namespace mood
 
-/// valence, arousal: -1..1. intensity: 0..2, 1 as made.
+/// valence, arousal: -1..1. intensity: 0..2, 1 is normal.
 struct Mood {
     double valence;
     double arousal;
@@ -107,8 +107,8 @@ struct Mood {
     bool like(const Ref<Mood>& other) const;
 };
 
-/// A mood told from `start` on, until `end`; what it leaves out stays as it would be without it. Of two that last the
-/// later began counts, and the other again when that is over.
+/// A mood that holds from `start` until `end`; a field that it leaves out stays as it is without it. If two hold at
+/// once, the one that began later counts. When it is over, the other counts again.
 struct MoodFrom {
     std::string id;
     double start;
@@ -128,7 +128,7 @@ struct MoodFrom {
         : id(std::move(id_)), start(start_), valence(valence_), arousal(arousal_), intensity(intensity_), end(end_) {}
 };
 
-/// The mood over time. base: where nothing is told; told: by start.
+/// The mood over time. base: the mood where no other holds; told: the others, by start.
 struct Moods {
     Ref<Mood> base;
     List<Ref<MoodFrom>> told;
@@ -137,7 +137,7 @@ struct Moods {
         : base(std::move(base_)), told(std::move(told_)) {}
 };
 
-/// What a mood makes of the life layers' amounts and rates: factors, as those of a manner.
+/// The factors by which a mood changes the amounts and rates of the life layers, as those of a manner.
 struct LifeMood {
     double breathing;
     double breath_rate;
@@ -155,7 +155,7 @@ struct LifeMood {
 
 /// Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they
 /// hang, 0..1, or are open wide, below 0. smile, frown, brow_down, brow_up, brows: weights of the face, 0..1. thrust:
-/// how far the body leans into it, 0..1, or draws back, below 0. tension: of shoulders, arms and hands, 0..1. closed:
+/// how far the body leans forward, 0..1, or draws back, below 0. tension: of shoulders, arms and hands, 0..1. closed:
 /// how close the arms are kept, 0..1.
 struct Bearing {
     double droop;
@@ -206,7 +206,7 @@ inline bool Mood::like(const Ref<Mood>& other) const {
 
 namespace mood {
 
-/// Return a mood with what is told of it changed, each within its range.
+/// Return a mood with the given fields changed, each limited to its range.
 inline Ref<Mood> changed(
     const Ref<Mood>& mood,
     const std::optional<double>& valence,
@@ -220,7 +220,7 @@ inline Ref<Mood> changed(
     );
 }
 
-/// Return the mood wanted at a time; posture and face take a while to follow (`shown`).
+/// Return the mood that holds at a time; posture and face follow it slowly (`shown`).
 inline Ref<Mood> mood_at(const Ref<Moods>& moods, double seconds) {
     Ref<Mood> out = moods->base;
     for (const auto& told : moods->told) {
@@ -234,8 +234,8 @@ inline Ref<Mood> mood_at(const Ref<Moods>& moods, double seconds) {
     return out;
 }
 
-/// Return those that may still show at `seconds` or later: not what is over and has faded, nor what another that lasts
-/// for ever has replaced.
+/// Return the moods that may still show at `seconds` or later: without those that are over and have faded, and without
+/// those that a mood without an end has replaced.
 inline List<Ref<MoodFrom>> lasting(const List<Ref<MoodFrom>>& told, double seconds) {
     List<Ref<MoodFrom>> out;
     for (int place = 0; place < lang::len(told); place++) {
@@ -284,8 +284,8 @@ inline double faded(double x) {
     return y * y * (3 - 2 * y);
 }
 
-/// Return the mood that shows at a time, on its way from those before. starts: when each begins, ascending; values:
-/// valence, arousal, intensity of each. Before the first it is the first.
+/// Return the mood that shows at a time, while it fades from the previous ones. starts: when each begins, ascending;
+/// values: valence, arousal, intensity of each. Before the first it is the first.
 inline Ref<Mood> shown(const List<double>& starts, const List<List<double>>& values, double seconds) {
     int place = lang::len(starts) - 1;
     while (place > 0 && lang::at(starts, place) > seconds) {
@@ -323,8 +323,8 @@ inline double leaning(double x, double most) {
     return (1 + y) / (1 - y);
 }
 
-/// Return how lively a mood makes somebody, -1..1: as much as it arouses, more where it is pleasant, less where it is
-/// unpleasant and does not excite.
+/// Return how lively a mood is, -1..1: its arousal, plus some if it is pleasant, less if it is unpleasant and not
+/// exciting.
 inline double liveliness(const Ref<Mood>& mood) {
     double well = std::max(0.0, mood->valence);
     double ill = std::max(0.0, -mood->valence);
@@ -360,18 +360,18 @@ inline double tempo(const Ref<Mood>& mood) {
     return mood::within(by_mood, mood::LEAST_TEMPO, mood::MOST_TEMPO);
 }
 
-/// Return how much longer clip seconds take at a speed than at their own, 0 at that, to the last digit.
+/// Return how much longer clip seconds take at a speed than at their own speed, exactly 0 at that speed.
 inline double drag(double seconds, double speed) {
     return seconds * (lang::divided(1, speed) - 1);
 }
 
-/// Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of the turn as
-/// it was made, a unit quaternion: turns of nearly half a circle, whose short way changes sides, stay as they are.
+/// Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of the original
+/// rotation, a unit quaternion. Rotations of nearly half a circle, whose short way changes sides, stay as they are.
 inline double turn_extent(double extent, double real) {
     return 1 + (extent - 1) * mood::faded((std::abs(real) - 0.1) / 0.4);
 }
 
-/// Whether an action was made for a mood: tagged with one that is near.
+/// Return whether an action was made for a mood: whether it has the tag of a mood that is near.
 inline bool made_for(const Ref<Mood>& mood, const List<std::string>& tags) {
     bool is_any = false;
     for (const auto& tag : tags) {
@@ -391,9 +391,9 @@ inline double distance(const Ref<Mood>& mood, const std::string& name) {
     return std::sqrt(x * x + y * y);
 }
 
-/// Return how much likelier than usual an action is. vigour: how energetic it is beside others of its layer and kind,
-/// -1..1. Up to 4 times for that, 4 for a tag of valence, 9 for a tag that names a mood; and as much rarer where they
-/// are against it.
+/// Return the factor of an action's likelihood. vigour: how energetic it is compared with others of its layer and kind,
+/// -1..1. The factor is up to 4 for vigour, 4 for a tag of valence and 9 for a tag that names a mood, and the inverse
+/// if they contradict the mood.
 inline double favour(const Ref<Mood>& mood, const List<std::string>& tags, double vigour) {
     double out = mood::leaning(vigour * mood::within(mood::liveliness(mood) + (mood->intensity - 1), -1.0, 1.0), 4.0);
     if (lang::contains(tags, mood::PLEASANT)) {
@@ -414,14 +414,14 @@ inline double favour(const Ref<Mood>& mood, const List<std::string>& tags, doubl
     return out;
 }
 
-/// Whether something a model wrote is performed in a mood: the less lively, the less of it, down to 0.6.
+/// Return whether something that a model wrote is performed in a mood: less of it in a less lively mood, down to 0.6.
 inline bool stirs(const Ref<Mood>& mood, std::uint32_t seed, const std::string& key) {
     double lively = mood::liveliness(mood);
     return lively >= 0 || choice::uniform(seed, List<std::string>{key, "mood"}) < 1 + 0.4 * lively;
 }
 
-/// Return what a mood makes of the life layers. Breath quickens and deepens with arousal, eyes dart and blink more; who
-/// feels bad looks away more, who feels well less. The amounts are ours.
+/// Return how a mood changes the life layers. With arousal, breath is quicker and deeper, and eyes dart and blink more.
+/// In an unpleasant mood the character looks away more, in a pleasant one less. The amounts are ours.
 inline Ref<LifeMood> life_of(const Ref<Mood>& mood) {
     double a = mood->arousal;
     double v = mood->valence;
@@ -435,7 +435,7 @@ inline Ref<LifeMood> life_of(const Ref<Mood>& mood) {
 }
 
 /// Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009);
-/// shoulders rise, fists close and the body goes ahead with arousal that is not joy; fear draws back (Coulson 2004);
+/// shoulders rise, fists close and the body leans forward with arousal that is not joy; fear draws back (Coulson 2004);
 /// the amounts are ours.
 inline Ref<Bearing> bearing(const Ref<Mood>& mood) {
     double v = mood->valence;

@@ -1,11 +1,11 @@
-// The mouth over time: from pieces of speech, each with one mouth shape, to smooth weights of all shapes.
+// The mouth over time: turn pieces of speech, each with one mouth shape, into smooth weights of all shapes.
 //
-// Coarticulation after Cohen and Massaro (1993): every piece rules the mouth around its own time, begins before it is
-// heard and lingers after it; what the mouth shows is the mean of all pieces weighted by how much each rules. A mean
-// never closes a mouth, so lips that meet (p, b, m) and teeth on the lip (f, v) are laid over it (`_closed`): in their
-// middle nothing else shows, however quick the speech is. Lips round for a rounded vowel as soon as the consonants
-// before it begin (look-ahead, Henke 1966), at most a quarter of a second before it (Bell-Berti and Harris 1981 found
-// it begin at about a fixed time before the vowel). The numbers are ours.
+// Coarticulation after Cohen and Massaro (1993): every piece dominates the mouth around its own time, begins before it
+// is heard and lingers after it. The mouth shows the mean of all pieces, weighted by their dominance. A mean never
+// closes a mouth. So lips that meet (p, b, m) and teeth on the lip (f, v) are added on top (`_closed`): in their middle
+// nothing else shows, however quick the speech is. Lips round for a rounded vowel as soon as the consonants before it
+// begin (look-ahead, Henke 1966), at most a quarter of a second before it (Bell-Berti and Harris 1981 found it begin at
+// about a fixed time before the vowel). The numbers are ours.
 //
 // Translated from metagraph/playback/life/mouth.py; change that, and translate anew.
 #pragma once
@@ -85,8 +85,8 @@ struct MouthPiece {
 
 namespace mouth {
 
-/// Return rows `[K][15]` of the shapes' weights, summing to 1; shut at both ends. Their times are evenly spaced from 0
-/// to the duration, at least 1 ms.
+/// Return rows `[K][15]` of the shapes' weights, which sum to 1; the mouth is shut at both ends. Their times are evenly
+/// spaced from 0 to the duration, at least 1 ms.
 inline List<List<double>> mouth_track(const List<Ref<MouthPiece>>& pieces, double duration) {
     // as many for 0.88 s as languages that divide otherwise
     int count = std::max(2, static_cast<int>(std::ceil(duration / mouth::STEP - 1e-06)) + 1);
@@ -149,7 +149,7 @@ inline List<List<double>> mouth_track(const List<Ref<MouthPiece>>& pieces, doubl
     return out;
 }
 
-/// Return rows (how far a closure has come, how far it keeps the other one away), 0..1.
+/// Return rows (how far a closure has progressed, how far it suppresses the other one), 0..1.
 inline List<std::tuple<double, double>> _gates(
     const List<Ref<MouthPiece>>& pieces,
     const std::string& viseme,
@@ -183,7 +183,7 @@ inline List<std::tuple<double, double>> _gates(
     return out;
 }
 
-/// Return a row with closures laid over it: as much of it is left as they leave open.
+/// Return a row with the closures on top: they suppress the rest as far as they are closed.
 inline List<double> _closed(
     const List<double>& row,
     const std::tuple<double, double>& lips,
@@ -208,8 +208,8 @@ inline List<double> _closed(
     return out;
 }
 
-/// Write shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they are now, and
-/// leave the others what room they leave: smoothing must not part lips that meet.
+/// Write the shapes without silence `[14]`, smoothed over three moments. Shapes that close the mouth keep their present
+/// weights, and the others share what is left: smoothing must not part lips that meet.
 inline void soften(List<double>& out, const List<double>& before, const List<double>& now, const List<double>& after) {
     for (int n = 0; n < lang::len(out); n++) {
         lang::at(out, n) = 0.25 * lang::at(before, n) + 0.5 * lang::at(now, n) + 0.25 * lang::at(after, n);
@@ -232,8 +232,8 @@ inline List<double> rest() {
     return found;
 }
 
-/// Return the times of stressed syllables: the first peak, then the strongest that have no stronger one within `ACCENT`
-/// seconds. People blink and gesture on these, not on every syllable.
+/// Return the times of stressed syllables: the first peak, then those with no stronger one within `ACCENT` seconds.
+/// People blink and gesture on these, not on every syllable.
 inline List<double> accents_of(const List<double>& peaks, const List<double>& strengths) {
     List<double> taken;
     List<std::tuple<int, double, double>> keys;

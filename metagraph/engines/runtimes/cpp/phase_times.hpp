@@ -28,7 +28,7 @@ struct Phases {
     Phases(double start_, double ready_, double stroke_, double stroke_end_, double relax_, double end_)
         : start(start_), ready(ready_), stroke(stroke_), stroke_end(stroke_end_), relax(relax_), end(end_) {}
 
-    /// Return where a gesture begins that skips its preparation: as late as it can blend in and be ready.
+    /// Return where a gesture begins if it skips its preparation: as late as it can blend in and be ready.
     double skip(double blend_in) const;
 };
 

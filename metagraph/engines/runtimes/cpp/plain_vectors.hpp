@@ -1,5 +1,5 @@
-// Vectors and turns as plain tuples, for what is worked out one pose at a time, the same in all languages. Vectors are
-// x, y, z; quaternions xyzw, of length 1.
+// Vectors and rotations as plain tuples, for code that computes one pose at a time, the same in all languages. Vectors
+// are x, y, z; quaternions xyzw, of length 1.
 //
 // Translated from metagraph/motion/plain_vectors.py; change that, and translate anew.
 #pragma once
@@ -94,13 +94,13 @@ inline std::tuple<double, double, double, double> between(
     );
 }
 
-/// Return how long a vector is.
+/// Return the length of a vector.
 inline double length(const std::tuple<double, double, double>& v) {
     auto [x, y, z] = v;
     return std::sqrt(x * x + y * y + z * z);
 }
 
-/// Return a vector of length 1 in a direction; of no length where there is none.
+/// Return a vector of length 1 in the same direction; the zero vector stays as it is.
 inline std::tuple<double, double, double> unit(const std::tuple<double, double, double>& v) {
     return plain_vectors::scaled(v, 1.0 / std::max(plain_vectors::length(v), 1e-12));
 }
@@ -112,7 +112,7 @@ inline std::tuple<double, double, double, double> unit_turn(const std::tuple<dou
     return std::tuple<double, double, double, double>{x * k, y * k, z * k, w * k};
 }
 
-/// Return the turn back.
+/// Return the inverse rotation.
 inline std::tuple<double, double, double, double> back(const std::tuple<double, double, double, double>& q) {
     auto [x, y, z, w] = q;
     return std::tuple<double, double, double, double>{-x, -y, -z, w};

@@ -1,4 +1,4 @@
-// What is remembered of what was played: how often an action was, lately, and until when.
+// What the planner remembers of played actions: how often each played lately, and until when.
 //
 // Translated from metagraph/playback/planning/remembering.py; change that, and translate anew.
 #pragma once
@@ -25,12 +25,12 @@ inline void remember(
 
 namespace remembering {
 
-/// Return what draws of a stance and kind are remembered under.
+/// Return the key under which draws of a stance and kind are remembered.
 inline std::string node(const std::string& stance, const std::string& kind) {
     return lang::text(kind, " ", stance);
 }
 
-/// Whether so many other draws came after an action's last one.
+/// Return whether at least this many other draws came after an action's last one.
 inline bool rested(const List<std::string>& recent, const std::string& ident, int needed) {
     if (needed <= 0) {
         return true;
@@ -39,7 +39,7 @@ inline bool rested(const List<std::string>& recent, const std::string& ident, in
         && !lang::contains(lang::part(recent, std::max(0, lang::len(recent) - needed)), ident);
 }
 
-/// Note that a cue was played: how often its action was, lately, and until when.
+/// Note that a cue was played: count its action, and note when it ended.
 inline void remember(
     const Ref<Cue>& cue,
     Map<std::string, int>& uses,

@@ -1,8 +1,8 @@
 // Temporal replanning: meta actions that may clash become a meta plan that does not (Borer et al., section 6.1).
 //
-// Greedy, by start time and then priority. The running action is never touched. Where two overlap, the more important
-// one keeps its time; the other is delayed past it, or cut where it begins, and then goes on with its remainder if it
-// asked to.
+// Greedy, by start time and then priority. The running action is never touched. If two overlap, the more important one
+// keeps its time. The other is delayed past it, or cut where it begins; its remainder then plays afterwards if the
+// request says so.
 //
 // Translated from metagraph/playback/planning/replan.py; change that, and translate anew.
 #pragma once
@@ -50,8 +50,8 @@ inline Ref<Report> _told(
 
 namespace replan {
 
-/// Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those
-/// that say how late they may be are judged where it shows how late they are.
+/// Let new requests wait until `free` seconds, the end of the running action, and drop those that would wait too long.
+/// Requests that say how late they may be are judged later, when their lateness is known.
 inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> delay(
     const List<Ref<MetaAction>>& asked,
     double free,
@@ -92,9 +92,9 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> delay(
 
 /// Return the meta plan, ascending and without overlaps, and what became of the rest.
 ///
-/// What is asked for is placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions that
-/// do not overlap come back as they are, so a plan that is placed again stays as it is. Of equal start and priority,
-/// the id that sorts first goes first.
+/// Requests are placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions that do not
+/// overlap stay as they are, so a plan that is placed again does not change. If start and priority are equal, the id
+/// that sorts first goes first.
 inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> replan(
     const List<Ref<MetaAction>>& metas,
     const Ref<Settings>& settings,
@@ -125,7 +125,8 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> replan(
     };
 }
 
-/// Return what is left of what a model wrote beside what is placed: the first stretch of each that is long enough.
+/// Return the parts of written meta actions that fit beside the placed ones: the first stretch of each that is long
+/// enough.
 inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _fitted(
     const List<Ref<MetaAction>>& written,
     const List<Ref<MetaAction>>& placed,
@@ -188,7 +189,7 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _fitted(
     return std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>>{out, reports};
 }
 
-/// Return what decides who is placed first.
+/// Return the sort key that decides which is placed first.
 inline std::tuple<double, int, std::string, int> _order(const Ref<MetaAction>& meta) {
     return std::tuple<double, int, std::string, int>{
         meta->start,
@@ -301,7 +302,7 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _placed(
     return std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>>{placed, reports};
 }
 
-/// Return a meta action from `free` on.
+/// Return a meta action that begins at `free` instead.
 inline Ref<MetaAction> _after(const Ref<MetaAction>& meta, double free) {
     return lang::made<MetaAction>(meta->request, free, free + (meta->end - meta->start), meta->part, meta->written);
 }

@@ -26,7 +26,7 @@ struct Performer;
 
 namespace sampling {
 
-inline constexpr double ON_TIME = 0.1; // seconds by which what is asked for may begin later than that, and is on time
+inline constexpr double ON_TIME = 0.1; // seconds by which a request may begin later and still be on time
 // seconds of crossfade when a long rest changes from one loop of its stance to another
 inline constexpr double LOOP_FADE = 0.6;
 inline Ref<Performer> performer_after(
@@ -41,7 +41,7 @@ inline Ref<Performer> performer_after(
 
 }  // namespace sampling
 
-/// One action of a chain: who may play it, and for a transition on the way the stance it leads to.
+/// One action of a chain: the candidates for it and, for a transition on the way, the stance it leads to.
 struct SamplingStep {
     List<Ref<Action>> candidates;
     std::string hop;
@@ -50,12 +50,12 @@ struct SamplingStep {
         : candidates(std::move(candidates_)), hop(std::move(hop_)) {}
 };
 
-/// One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
+/// One layer being planned, cue after cue. It changes while planning, and never leaves the planner.
 ///
 /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun:
-/// keys of meta actions whose chain of transitions plays already. served: keys of those that another's action serves,
-/// too. moods: what it is in the mood for, and when. candidates: the actions of each `node` that may be drawn, as far
-/// as they were asked for. acted: when the last action ended.
+/// keys of meta actions whose chain of transitions already plays. served: keys of those that the action of another one
+/// serves, too. moods: the mood over time. candidates: the actions of each `node` that may be drawn, for the nodes
+/// needed so far. acted: when the last action ended.
 struct Performer {
     Ref<Project> project;
     Ref<MetaGraph> graph;
@@ -109,51 +109,50 @@ struct Performer {
             served(std::move(served_)),
             candidates(std::move(candidates_)) {}
 
-    /// Take a cue as played.
+    /// Note that a cue is played.
     void note(const Ref<Cue>& cue, const std::string& then);
 
-    /// When the next action may begin at the earliest.
+    /// The earliest time at which the next action may begin.
     double ready();
 
     /// Lay the first loop down; return whether the layer can perform at all.
     bool begin(const std::string& stance);
 
-    /// Realise what starts before `end` of a conflict-free meta plan, in order.
+    /// Realise in order those meta actions of a conflict-free meta plan that start before `end`.
     void perform(const List<Ref<MetaAction>>& metas, double end);
 
     void _realise(const Ref<Bound>& bound, double now);
 
-    /// Return those that come least late, if that is not too late; of them those that leave most of what follows its
-    /// time, and serve most of it.
+    /// Return the candidates that come least late, if that is not too late; among them those that leave the following
+    /// requests the most time and serve the most of them.
     List<Ref<Action>> _timely(const Ref<Bound>& bound, const List<Ref<Action>>& fitting, double now);
 
-    /// Return what a request that comes late waits for.
+    /// Return the reason why a request comes late.
     std::string _cause(const Ref<MetaRequest>& request, double now);
 
-    /// Return when something that is asked for has to begin at the latest, to be on time; never in the past, where
-    /// nothing meets it.
+    /// Return the latest time at which a requested action has to begin to be on time; never in the past.
     double _latest(const Ref<MetaRequest>& request);
 
-    /// Return when what follows an action could begin at the earliest.
+    /// Return the earliest time at which the next action could begin after this one.
     double _over(const Ref<Action>& action, const Ref<MetaRequest>& request, double now);
 
-    /// Return when an action that is to be played through is left nevertheless: early enough for the first of what
-    /// follows that can be in time then, late enough for its own stroke; infinity for never.
+    /// Return when an action that should play to its end is left early all the same: early enough for the first
+    /// following request that can then be in time, late enough for its own stroke; infinity for never.
     double _until(const Ref<Action>& action, const Ref<CueShape>& shape, const Ref<Bound>& bound);
 
-    /// Leave the running action early for the first of what is asked for that can be in time then, and where it was
-    /// `stopped` in any case. What a model wrote, or is less important, is left at once, the rest where its retraction
-    /// begins.
+    /// Leave the running action early for the first request that can then be in time, or if it was `stopped`. An action
+    /// that a model wrote, or that is less important, is left at once; others are left where their retraction begins.
     void make_way(const Ref<MetaAction>& running, const List<Ref<MetaAction>>& asked, double now, bool stopped);
 
-    /// Leave the running action: it goes back to its stance from where it is. A transition ends where it leads.
+    /// Leave the running action: it returns to its stance from where it is. A transition ends in the stance it leads
+    /// to.
     void retract(double now);
 
-    /// Return when an action may be drawn again.
+    /// Return the time from which an action may be drawn again.
     double _cooled(const Ref<Action>& action);
 
-    /// Return each action in turn: the transitions to get there, then the action itself; None if impossible or
-    /// needless, or where the model wrote it and nothing is rested enough.
+    /// Return each action in turn: the transitions to get there, then the action itself; None if it is impossible or
+    /// not needed, or if the model wrote it and every candidate played too recently.
     std::optional<List<Ref<SamplingStep>>> _steps(const Ref<MetaAction>& meta, double now);
 
     std::string _elsewhere(const Ref<MetaRequest>& request);
@@ -161,11 +160,11 @@ struct Performer {
     /// Return the transitions hop by hop from the current stance to `goal`.
     std::optional<List<Ref<SamplingStep>>> _way(const Ref<MetaAction>& meta, const std::string& goal);
 
-    /// Return the stances after the current one on the shortest way of transitions that can play, the goal last; none
-    /// where there is no way. Among equally short ones that whose transitions were placed first.
+    /// Return the stances after the current one on the shortest way of transitions that can play, the goal last; empty
+    /// if there is no way. Among equally short ways, the one whose transitions were placed first.
     List<std::string> _chain(const std::string& goal);
 
-    /// Whether an action leaves the layer in a stance that can rest.
+    /// Return whether an action leaves the layer in a stance that has a loop.
     bool _arrives(const Ref<Action>& action);
 
     bool _usable(const Ref<Action>& action);
@@ -173,40 +172,40 @@ struct Performer {
     /// Return how an action would play for a request from `now` on, or as a step on the way to it.
     Ref<CueShape> _shape(const Ref<Action>& action, const Ref<MetaRequest>& request, double now, const Ref<Mood>& mood);
 
-    /// Return the mood that something asked for is played in from `at` on, or at its stroke.
+    /// Return the mood in which a request is played from `at` on, or at its stroke.
     Ref<Mood> _mood(const Ref<MetaRequest>& request, double at);
 
-    /// Return how fast an action is played, 1 where it was made for the mood.
+    /// Return the speed of an action in a mood, 1 if it was made for the mood.
     double _tempo(const Ref<Action>& action, const Ref<Mood>& mood);
 
-    /// Return how large an action is played. Those that move feet or leave for another stance, touch something or were
-    /// made for the mood are played as they were made.
+    /// Return the extent of an action in a mood. Actions that move the feet, lead to another stance, touch something or
+    /// were made for the mood keep their extent.
     double _extent(const Ref<Action>& action, const Ref<Mood>& mood);
 
-    /// Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood and variety favour, leaving out those used too
-    /// recently as long as any others are left.
+    /// Draw with p_k ~ likelihood_k / max(c_k, 1), times the factors of mood and variety. Actions used too recently are
+    /// left out as long as others are left.
     Ref<Action> _draw(const List<Ref<Action>>& candidates, const std::string& key, double now, const Ref<Mood>& mood);
 
-    /// Return how much likelier variety makes an action.
+    /// Return the factor by which variety changes an action's likelihood.
     double _variety(const Ref<Action>& action, double now);
 
-    /// Return those that may be done of one's own accord; see `director`.
+    /// Return the actions that the character may do by itself; see `director`.
     List<Ref<Action>> _fresh(const Ref<MetaAction>& meta, const List<Ref<Action>>& candidates, double now);
 
     /// Return when the stance was last changed; minus infinity for never.
     double _moved();
 
-    /// Return whether something that stands out was done since a time.
+    /// Return whether an act that stands out was done since a time.
     bool _shown(double since);
 
-    /// Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and
-    /// so on.
+    /// Leave out actions that need more other actions before they play again. If nothing is left, all need one less,
+    /// and so on.
     List<Ref<Action>> _spaced(const List<Ref<Action>>& candidates);
 
     /// Return c_k of section 6.2, alpha times the uses, over the settings' memory.
     double _count(const std::string& ident, double now);
 
-    /// hops: whether it is a transition on the way to what is asked for.
+    /// hops: whether it is a transition on the way to the requested action.
     Ref<Cue> _cue(
         const Ref<Action>& action,
         const Ref<CueShape>& shape,
@@ -218,10 +217,10 @@ struct Performer {
 
     void _keep(const Ref<Cue>& cue);
 
-    /// Return one of a stance's loops, drawn by likelihood; None where it has none.
+    /// Return one of a stance's loops, drawn by likelihood; None if it has none.
     Ref<Action> loop(const std::string& stance, const std::string& key);
 
-    /// Where a stance has several loops, change between them in long rests, at a loop's end.
+    /// Change between the loops of a stance in long rests, at the end of a loop.
     void vary_rests(double end);
 
     void _tell(
@@ -1151,9 +1150,9 @@ inline void Performer::_keep(const Ref<Cue>& cue) {
     this->note(cue, cue->then);
     Ref<Action> loop = this->loop(cue->then, cue->meta);
     if (loop != nullptr) {
-        // The loop begins anew under the action, so that the action's last pose meets the loop's first.
-        // Where the action leaves joints alone the change shows, and takes its time: a transition all of
-        // its own.
+        // The loop begins again under the action, so that the action's last pose meets the loop's first.
+        // On joints that the action does not move, the change shows. It takes its time there, like a
+        // transition.
         bool partial = cue->action->limb != "both"
             || lang::len(cue->action->joints) > 0
             || lang::len(cue->action->joint_weights) > 0;
@@ -1253,7 +1252,7 @@ inline void Performer::_tell(
 
 namespace sampling {
 
-/// Return the performer that stands where cues have been played after a past.
+/// Return the performer as it is after a past and the cues that played since.
 inline Ref<Performer> performer_after(
     const Ref<Project>& project,
     const Ref<MetaGraph>& graph,

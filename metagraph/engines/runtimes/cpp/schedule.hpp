@@ -1,8 +1,8 @@
-// When the life layers do what: drawn from the seed, event by event, then pure in time.
+// The events of the life layers: drawn from the seed one by one, and then a function of time.
 //
-// Each event depends only on the one before it and on what is asked meanwhile, and its chance on its number. So a
-// schedule grows as a plan does: what has begun stays, tick by tick gives what one call gives, and what lies behind can
-// be forgotten.
+// Each event depends only on the previous one and on the requests meanwhile; its random draw depends on its number. So
+// a schedule grows as a plan does: events that have begun stay, many short extensions give the same as one long one,
+// and past events can be forgotten.
 //
 // Translated from metagraph/playback/life/schedule.py; change that, and translate anew.
 #pragma once
@@ -83,11 +83,12 @@ inline double share(const Ref<Lane>& lane, double start, double end);
 
 }  // namespace schedule
 
-/// Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's rows stand in the order given here.
+/// Everything that the life layers do by themselves from 0 to `end` seconds, in lanes. The columns of a lane's rows are
+/// listed here.
 ///
-/// modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length s, depth.
-/// aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and
-/// up, degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. swells, emphases: of the face
+/// modes: index in MODES. moods: valence, arousal, intensity. targets: what the gaze looks at. breaths: length s,
+/// depth. aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left
+/// and up, degrees. blinks: 0 spontaneous, 1 on a stressed syllable, 2 requested. swells, emphases: of the face
 /// (`expressions`). drawn: seconds up to which the lanes are filled; the rest is what they were drawn from.
 struct Schedule {
     double end;
@@ -139,13 +140,13 @@ struct Schedule {
             voices(std::move(voices_)),
             seed(seed_) {}
 
-    /// Return the schedule without what ended before `seconds`; what is drawn on from it stays as it would have been.
+    /// Return the schedule without events that ended before `seconds`; later draws do not change.
     Ref<Schedule> since(double seconds) const;
 };
 
-/// One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks change;
-/// manners: what mode and mood make of the amounts from each on; strict: 1 where the look then is, else 0. phrases:
-/// when the character begins to speak.
+/// One extension: lanes filled from `cut` to `drawn` seconds. edges: when modes, moods or strict looks change; manners:
+/// the factors of the amounts from each edge on; strict: 1 if the look is strict from there on, else 0. phrases: when
+/// the character begins to speak.
 struct LifeDraw {
     Ref<Life> life;
     Ref<Track> track;
@@ -193,36 +194,37 @@ struct LifeDraw {
             strict(std::move(strict_)),
             phrases(std::move(phrases_)) {}
 
-    /// Lay modes, moods and strict looks out in one row of segments.
+    /// Combine modes, moods and strict looks into one list of segments.
     void begin(double cut);
 
-    /// Return what keys the chances of an event: those of `chance_of`, 0..1, without the ends.
+    /// Return the key of an event's random numbers, for `chance_of`.
     std::uint32_t key(const std::string& what, int number);
 
-    /// Return the place of the segment that a time is in.
+    /// Return the index of the segment that contains a time.
     int place_at(double seconds);
 
-    /// Return whether the character thinks at a time: then it looks up and aside, never down.
+    /// Return whether the character is thinking at a time: then it looks up and aside, never down.
     bool thinks(double seconds);
 
-    /// Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each segment;
-    /// infinity where it is not before the end.
+    /// Return when `need` seconds have passed since `seconds` on a clock that runs at these rates, one for each
+    /// segment; infinity if that is after the end.
     double after(double seconds, double need, const List<double>& rates);
 
-    /// Each breath follows the one before; the first began before time 0, so that not everybody breathes alike.
+    /// Draw breaths, each after the previous one. The first began before time 0, so that characters do not breathe in
+    /// step.
     Ref<Lane> breaths(const Ref<Lane>& lane);
 
     /// Return the length of a breath that begins at `at`, so that the next one begins right before the character
     /// speaks.
     double to_phrase(double at, double length);
 
-    /// The eyes' small jumps.
+    /// Draw the small jumps of the eyes.
     Ref<Lane> saccades(const Ref<Lane>& lane);
 
-    /// Looks away for a moment.
+    /// Draw short looks away.
     Ref<Lane> aversions(const Ref<Lane>& lane);
 
-    /// Blinks of themselves, on stressed syllables and asked for, whichever comes first.
+    /// Draw blinks: spontaneous ones, those on stressed syllables and requested ones, in the order in which they come.
     Ref<Lane> blinks(const Ref<Lane>& lane);
 
     /// Return the stressed syllables from `start` to the end that may bring blinks, and whether each is a speech's
@@ -583,9 +585,9 @@ inline List<std::tuple<double, bool>> LifeDraw::accents(double start) {
 
 namespace schedule {
 
-/// Return the schedule to `end` seconds. What `before` holds that begins before `now` stays exactly as it was.
+/// Return the schedule to `end` seconds. Events of `before` that begin before `now` stay exactly as they were.
 ///
-/// What it holds for later is kept, too, where nothing it was drawn from has changed.
+/// Its later events stay, too, if nothing that they were drawn from has changed.
 inline Ref<Schedule> schedule(
     const Ref<Life>& life,
     const Ref<Track>& track,
@@ -672,7 +674,7 @@ inline Ref<Schedule> schedule(
     );
 }
 
-/// Return "" where nothing a schedule was drawn from has changed, "places" where only those have, else "all".
+/// Return "" if nothing that a schedule was drawn from has changed, "places" if only places have, else "all".
 inline std::string _change(
     const Ref<Schedule>& before,
     const Ref<Life>& life,
@@ -692,7 +694,7 @@ inline std::string _change(
     return before->track->draws_like(track) ? std::string("places") : std::string("all");
 }
 
-/// Return what extends a schedule from `cut` to `drawn` seconds, with modes and looks in place.
+/// Return the draw that extends a schedule from `cut` to `drawn` seconds, with modes and looks filled in.
 inline Ref<LifeDraw> _draw(
     const Ref<Life>& life,
     const Ref<Track>& track,

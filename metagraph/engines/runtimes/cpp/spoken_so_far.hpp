@@ -1,4 +1,4 @@
-// What of an utterance was spoken until a moment, for the history that a language model goes on from.
+// The part of an utterance that was spoken until a moment, for the history from which a language model continues.
 //
 // Translated from metagraph/speech/spoken_so_far.py; change that, and translate anew.
 #pragma once
@@ -34,8 +34,8 @@ inline int _end_of_letters(const List<std::string>& letters, const List<std::str
 
 namespace spoken_so_far {
 
-/// Return what of an utterance was spoken until `seconds`, up to the word that was begun, and that word; "" where
-/// nothing was. said: everything, by start.
+/// Return the part of an utterance that was spoken until `seconds`, up to the word that was begun, and that word; "" if
+/// nothing was spoken. said: all speeches, by start.
 inline std::tuple<std::string, std::string> spoken_until(
     const Ref<Alphabet>& alphabet,
     const List<Ref<Speech>>& said,
@@ -64,7 +64,7 @@ inline std::tuple<std::string, std::string> spoken_until(
     return std::tuple<std::string, std::string>{alphabet->stripped(text), last};
 }
 
-/// Return the pieces of the utterance of an id that was said last; one that goes on after a pause is one.
+/// Return the pieces of the last utterance with an id; one that continues after a pause is one utterance.
 inline List<Ref<Speech>> _pieces(const List<Ref<Speech>>& said, const std::string& ident, double seconds) {
     List<Ref<Speech>> out;
     for (const auto& piece : said) {
@@ -81,7 +81,7 @@ inline List<Ref<Speech>> _pieces(const List<Ref<Speech>>& said, const std::strin
     return out;
 }
 
-/// Return what of one piece was spoken in its first `seconds`, and the last word of that.
+/// Return the part of one piece that was spoken in its first `seconds`, and its last word.
 inline std::tuple<std::string, std::string> _spoken_of(
     const Ref<Alphabet>& alphabet,
     const Ref<Speech>& piece,
@@ -138,12 +138,12 @@ inline std::tuple<std::string, std::string> _spoken_of(
     };
 }
 
-/// Whether a letter behind a word is no mark of it.
+/// Return whether a letter after a word is not a mark that belongs to it.
 inline bool _parts(const Ref<Alphabet>& alphabet, const std::string& letter) {
     return alphabet->stripped(letter) == "" || word_gestures::telling(alphabet, List<std::string>{letter});
 }
 
-/// Return the place behind a word in a text, from `first` on; -1 where it is not there.
+/// Return the index after a word in a text, searching from `first`; -1 if it is not there.
 inline int _end_of_letters(const List<std::string>& letters, const List<std::string>& word, int first) {
     for (int start = first; start < lang::len(letters) - lang::len(word) + 1; start++) {
         bool are_all = true;

@@ -1,10 +1,10 @@
-// The mouth shapes a voice makes, heard from its samples as they come in, where nobody tells them: the levels of four
-// bands beside the loudest that was heard. Nothing is waited for but a shape's shortest length, so that every engine
-// can hear what it plays.
+// The mouth shapes of a voice, detected from its samples as they come in, from the levels of four bands relative to the
+// loudest so far. The only delay is the shortest length of a shape, so every engine can analyse the sound that it
+// plays.
 //
-// Open vowels have more around 800 Hz, the first formant of an open mouth, than around 300; tongues in front more
-// around 2200, their second formant; sibilants most of all above 3500. The bounds are ours, chosen beside what
-// `speech.sound` makes of whole recordings.
+// Open vowels have more energy around 800 Hz, the first formant of an open mouth, than around 300 Hz. Front vowels have
+// more around 2200 Hz, their second formant. Sibilants have most above 3500 Hz. The bounds are ours, chosen by
+// comparison with the results of `speech.sound` on whole recordings.
 //
 // Translated from metagraph/playback/life/streamed_voice.py; change that, and translate anew.
 #pragma once
@@ -33,16 +33,15 @@ inline constexpr double HALF = -5.0; // half open
 // dB of the third band beside the second: the tongue is in front, of half open mouths
 inline constexpr double FRONT_HALF = -6.0;
 inline constexpr double FRONT = -8.5; // and of others
-inline constexpr double LEAST = 0.03; // seconds: what is shorter is no shape
-inline constexpr double STEP = 0.06; // seconds after which a shape that grows or wanes
-inline constexpr double GROWS = 0.15; // by so much is told again
-// seconds by which a piece may come after its time; one that is later is heard as it comes
-inline constexpr double BEHIND = 0.25;
+inline constexpr double LEAST = 0.03; // seconds: anything shorter is not a shape
+inline constexpr double STEP = 0.06; // seconds after which a shape that gets stronger or weaker
+inline constexpr double GROWS = 0.15; // by this much is reported again
+inline constexpr double BEHIND = 0.25; // seconds by which a piece may come late; a later one is heard when it comes
 
 }  // namespace streamed_voice
 
-/// A voice that is heard. rate: samples a second, 8000 or more. seconds: up to which it was heard. The rest is what it
-/// remembers. missed: seconds of the line in which no sound came.
+/// The state of a voice that is analysed. rate: samples a second, 8000 or more. seconds: how much of it was heard.
+/// missed: seconds of the line in which no sound came. The other fields are memory.
 struct StreamedVoice {
     double rate;
     double seconds;
@@ -90,19 +89,19 @@ struct StreamedVoice {
             memory(std::move(memory_)),
             energy(std::move(energy_)) {}
 
-    /// Take in the next samples, -1..1; return the shapes that begin in them: visemes of the set "oculus", at seconds
+    /// Analyse the next samples, -1..1; return the shapes that begin in them: visemes of the set "oculus", at seconds
     /// from the line's start.
     List<Ref<VisemeMark>> hear(const List<double>& samples);
 
-    /// Go on where the line is, when its sound came too late. said: seconds of the line that are over.
+    /// Skip to where the line is if its sound came too late. said: seconds of the line that are over.
     void follow(double said);
 
     void _begin();
 
-    /// Tell what the last moment is; return whether a shape begins or changes, at `told`.
+    /// Classify the last moment; return whether a shape begins or changes, at `told`.
     bool _judge(int size);
 
-    /// Return the shape of a moment. levels: dB of the bands, less the highest at low rates.
+    /// Return the shape of a moment. levels: dB of the bands, without the highest band at low rates.
     std::string _shape_of(const List<double>& levels);
 };
 

@@ -1,10 +1,10 @@
-// How who listens takes up the mood of who talks with it, and laughs along: moods told for it, which posture, face and
-// life then show as any others.
+// How a listener takes up the mood of its partner and laughs along. The result is moods, which posture, face and life
+// show like any others.
 //
 // What is known and followed here: faces take up others' expressions weakly, within about a second of seeing them
 // (Dimberg 1982), as far as they are friendly: happy and sad ones, hardly angry ones (Hess and Fischer 2013); laughter
 // brings smiles and laughter, often but not always (Provine 1992). How much, how late and how often is ours. Neutral
-// moods are not taken up: who has a mood of its own keeps it before a calm face.
+// moods are not taken up: a character with a mood of its own keeps it in front of a calm face.
 //
 // Translated from metagraph/playback/life/sympathy.py; change that, and translate anew.
 #pragma once
@@ -48,7 +48,7 @@ inline List<Ref<MoodFrom>> laughs_along(
 
 }  // namespace sympathy
 
-/// A laugh of the other's, seconds.
+/// A laugh of the other character, in seconds.
 struct Laugh {
     double start;
     double end;
@@ -59,7 +59,8 @@ struct Laugh {
 
 namespace sympathy {
 
-/// Return the mood of who sees another's: `share`, 0..1, of the way there; its own before a neutral one.
+/// Return the mood of a character that sees another's: `share`, 0..1, of the way to it; its own mood if the other's is
+/// neutral.
 inline Ref<Mood> taken_up(const Ref<Mood>& own, const Ref<Mood>& other, double share) {
     if (other->valence == 0 && other->arousal == 0) {
         return own;
@@ -72,8 +73,8 @@ inline Ref<Mood> taken_up(const Ref<Mood>& own, const Ref<Mood>& other, double s
     );
 }
 
-/// Return what is told of the mood of who sees the other's from 0 to `end` seconds, by start. own: its mood without;
-/// who: a key of the other, which draws how late each is taken up.
+/// Return the moods of a character that sees the other's, from 0 to `end` seconds, by start. own: its mood without the
+/// other; who: the key of the other, from which each delay is drawn.
 inline List<Ref<MoodFrom>> moods_taken_up(
     const Ref<Moods>& own,
     const Ref<Moods>& other,
@@ -114,7 +115,7 @@ inline List<Ref<MoodFrom>> moods_taken_up(
     return out;
 }
 
-/// Return what is told of the mood of who laughs along with `share`, 0..1, of the other's laughs, by start.
+/// Return the moods of a character that laughs along with `share`, 0..1, of the other's laughs, by start.
 inline List<Ref<MoodFrom>> laughs_along(
     const Ref<Moods>& own,
     const List<Ref<Laugh>>& laughs,

@@ -1,4 +1,4 @@
-// All that was asked for and lasts, in order; see `items`. Times are seconds.
+// All requests that last, in order; see `items`. Times are seconds.
 //
 // Translated from metagraph/playback/life/track.py; change that, and translate anew.
 #pragma once
@@ -11,7 +11,7 @@ namespace metagraph {
 
 struct Track;
 
-/// All of it, each by start. Speeches do not overlap.
+/// All lasting requests, each kind sorted by start. Speeches do not overlap.
 struct Track : std::enable_shared_from_this<Track> {
     List<Ref<LookAt>> looks;
     List<Ref<Speech>> speeches;
@@ -38,31 +38,32 @@ struct Track : std::enable_shared_from_this<Track> {
             stays(std::move(stays_)),
             moods(std::move(moods_)) {}
 
-    /// Return the ids of all of it.
+    /// Return the ids of all items.
     List<std::string> idents() const;
 
     /// Return whether the models may not change a layer's stance at a time.
     bool stays_at(const std::string& layer, double seconds) const;
 
-    /// Return the mode that was asked for at a time, or talking while something is said; None where neither tells.
+    /// Return the mode requested at a time, or talking while something is said; None if neither applies.
     std::optional<std::string> told_mode(double seconds) const;
 
-    /// Return the track without items of these ids that begin at `now` or later; what has begun ends now, if it can.
+    /// Return the track without items of these ids that begin at `now` or later; those that have begun end now, if they
+    /// can.
     Ref<Track> without(const Set<std::string>& idents, double now = -INFINITY) const;
 
-    /// Return the track with those of another, whose speeches may overlap each other's.
+    /// Return the track with the items of another one, whose speeches may overlap.
     Ref<Track> joined(const Ref<Track>& more) const;
 
-    /// Return the track without what no time from `seconds` on needs.
+    /// Return the track without items that are not needed from `seconds` on.
     Ref<Track> since(double seconds) const;
 
-    /// Return the last of an id that is said.
+    /// Return the last speech with an id.
     Ref<Speech> last_speech(const std::string& ident) const;
 
-    /// Whether all is the same that chance depends on: where things are, and what stays, is not.
+    /// Return whether everything is the same that random draws depend on. Places and stays are not part of it.
     bool draws_like(const Ref<Track>& other) const;
 
-    /// Whether all is the same.
+    /// Return whether everything is the same.
     bool like(const Ref<Track>& other) const;
 };
 

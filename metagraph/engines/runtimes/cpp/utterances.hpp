@@ -1,7 +1,7 @@
-// What is done to something said: it is broken off, paused, gone on with, finished. An utterance is all that is said
-// under one id, piece by piece, until it is over. Times are seconds.
+// Break off, pause, resume and finish utterances. An utterance is everything that is said under one id, piece by piece,
+// until it is over. Times are seconds.
 //
-// What is paused lies in a time that never comes (`PAUSED`), each utterance in a place of its own there.
+// A paused utterance is moved to a time that never comes (`PAUSED`), each to a slot of its own.
 //
 // Translated from metagraph/playback/life/utterances.py; change that, and translate anew.
 #pragma once
@@ -69,22 +69,23 @@ inline bool is_same_utterance(const Ref<Speech>& one, const Ref<Speech>& other);
 
 namespace utterances {
 
-/// Return when a voice can begin: sooner than gestures, which blend. Nothing has been shown at the very beginning.
+/// Return when a voice can begin: sooner than gestures, which blend. At the very beginning it can begin at once,
+/// because nothing has been shown.
 inline double find_soon(double now, double lookahead) {
     return now > 0 ? now + std::min(lookahead, utterances::VOICE) : 0.0;
 }
 
-/// Return whether what begins then is paused.
+/// Return whether an item with this start is paused.
 inline bool is_paused(double start) {
     return start >= utterances::PAUSED;
 }
 
-/// Return whether a piece can be added to though it does not run: more was promised, or it is paused.
+/// Return whether more can be added to a piece that is not being said: more was announced, or it is paused.
 inline bool takes_more(const Ref<Speech>& speech) {
     return speech->more || speech->start >= utterances::PAUSED;
 }
 
-/// Return whether an utterance is not over at `now`: it is said, comes, is paused, or has more to come.
+/// Return whether an utterance is not over at `now`: it is being said, will be said, is paused, or expects more.
 inline bool goes_on(const List<Ref<Speech>>& speeches, const std::string& ident, double now) {
     Ref<Speech> first;
     for (const auto& s : lang::backwards(speeches)) {
@@ -109,8 +110,8 @@ inline List<std::string> find_utterances(const Ref<Track>& track, const std::str
     return out;
 }
 
-/// Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon`; where its
-/// sounds are not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
+/// Return when the voice of an utterance stops: at the end of the current sound, at `soon` at the latest; at once if
+/// its sounds are unknown or it is in a pause; at its start if it has not begun. now: when gestures can stop.
 inline double find_stop(
     const Ref<Alphabet>& alphabet,
     const Ref<Track>& track,
@@ -154,7 +155,7 @@ inline double find_stop(
         : first;
 }
 
-/// Return a time among those that never come in which nothing lies.
+/// Return a free slot among the times that never come.
 inline double find_slot(const Ref<Track>& track) {
     List<double> found;
     for (const auto& s : track->speeches) {
@@ -165,7 +166,7 @@ inline double find_slot(const Ref<Track>& track) {
     return lang::max_of(lang::together(List<double>{utterances::PAUSED}, found));
 }
 
-/// Return the track with an utterance over at `stop`: what comes of it is not said.
+/// Return the track with an utterance ended at `stop`: its later pieces are not said.
 inline Ref<Track> break_off(const Ref<Track>& track, const std::string& ident, double stop) {
     List<Ref<Speech>> speeches;
     for (const auto& speech : track->speeches) {
@@ -178,12 +179,12 @@ inline Ref<Track> break_off(const Ref<Track>& track, const std::string& ident, d
     return utterances::_closed(track, speeches, ident, stop, true);
 }
 
-/// Return the track with an utterance that is over when all that is known of it was said.
+/// Return the track with an utterance that is over once all its known pieces are said.
 inline Ref<Track> finish_speech(const Ref<Track>& track, const std::string& ident, double soon) {
     return utterances::_closed(track, track->speeches, ident, soon, false);
 }
 
-/// Return the track with these speeches, of which an utterance has no more to come. cuts: whether it was broken off.
+/// Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it was broken off.
 inline Ref<Track> _closed(
     const Ref<Track>& track,
     const List<Ref<Speech>>& speeches,
@@ -230,8 +231,8 @@ inline Ref<MoodFrom> _until(const Ref<MoodFrom>& mood, double end) {
     return lang::made<MoodFrom>(mood->id, mood->start, mood->valence, mood->arousal, mood->intensity, end);
 }
 
-/// Return the track with an utterance that is held from `stop` on, in `slot` (`find_slot`). made: ids of what was asked
-/// for it; it waits as long, if it has not begun.
+/// Return the track with an utterance paused from `stop` on, in `slot` (`find_slot`). made: ids of requests that belong
+/// to it; they wait, too, if they have not begun.
 inline Ref<Track> pause(
     const Ref<Track>& track,
     const std::string& ident,
@@ -325,7 +326,7 @@ inline Ref<Track> pause(
     return utterances::_moved(left, held, made, stop, utterances::PAUSED, by);
 }
 
-/// Return the track with an utterance that goes on at `soon`. made: as for `pause`.
+/// Return the track with an utterance that continues at `soon`. made: as for `pause`.
 inline Ref<Track> resume(const Ref<Track>& track, const std::string& ident, const Set<std::string>& made, double soon) {
     List<Ref<Speech>> held;
     for (const auto& s : track->speeches) {
@@ -382,7 +383,7 @@ inline Ref<Track> resume(const Ref<Track>& track, const std::string& ident, cons
 }
 
 /// Return the track with more speeches, and with the looks and moods of `made` that begin from `low` to before `high`
-/// moved by so many seconds.
+/// moved by a number of seconds.
 inline Ref<Track> _moved(
     const Ref<Track>& track,
     const List<Ref<Speech>>& speeches,
@@ -460,8 +461,8 @@ inline Ref<Track> _moved(
     );
 }
 
-/// Return why an utterance is over at the end of a piece of it: "finished", "interrupted" or "replaced"; "" where it is
-/// not over there.
+/// Return why an utterance is over at the end of a piece: "finished", "interrupted" or "replaced"; "" if it is not over
+/// there.
 inline std::string explain_end(const List<Ref<Speech>>& speeches, const Ref<Speech>& speech) {
     Ref<Speech> first;
     for (const auto& s : speeches) {
@@ -482,7 +483,7 @@ inline std::string explain_end(const List<Ref<Speech>>& speeches, const Ref<Spee
         : std::string("replaced");
 }
 
-/// Return whether a later piece of the same id goes on with what an earlier one says.
+/// Return whether a later piece of the same id continues an earlier one.
 inline bool is_same_utterance(const Ref<Speech>& one, const Ref<Speech>& other) {
     if (one->more || (other->skip > 0 && one->length.has_value() && !one->over.has_value())) {
         return true;

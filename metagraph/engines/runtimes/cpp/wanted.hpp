@@ -1,4 +1,4 @@
-// What was asked of the life layers, as segments in time: which mode the character is in, and what it looks at.
+// Requests of the life layers as segments in time: the mode of the character, and what it looks at.
 //
 // Translated from metagraph/playback/life/wanted.py; change that, and translate anew.
 #pragma once
@@ -42,8 +42,8 @@ inline Ref<GazeTarget> _target(
 
 }  // namespace wanted
 
-/// What is looked at from `start` on: a point, or a name whose place the project knows. since: when the look at it
-/// began; its place may have changed meanwhile. asked: not of its own accord.
+/// The target of the gaze from `start` on: a point, or a name whose place the project knows. since: when the look at it
+/// began; its place may have changed meanwhile. asked: whether a request set it.
 struct GazeTarget {
     double start;
     Ref<Spot> to;
@@ -62,7 +62,7 @@ struct GazeTarget {
     )
         : start(start_), to(std::move(to_)), since(since_), amount(amount_), strict(strict_), asked(asked_) {}
 
-    /// Whether it is the same but for its times.
+    /// Return whether it is the same apart from its times.
     bool like(const Ref<GazeTarget>& other) const;
 };
 
@@ -75,7 +75,7 @@ inline bool GazeTarget::like(const Ref<GazeTarget>& other) const {
 
 namespace wanted {
 
-/// Return the mode asked for; where none is, talking while something is said and idle otherwise.
+/// Return the requested mode; without one, talking while something is said and idle otherwise.
 inline std::string mode_at(const Ref<Track>& track, double seconds) {
     std::optional<std::string> told = track->told_mode(seconds);
     return !told.has_value() ? std::string("idle") : *told;
@@ -117,7 +117,7 @@ inline List<std::tuple<double, int>> modes_between(const Ref<Track>& track, doub
     return out;
 }
 
-/// Return what a character is in the mood for: what its life has set, and what is told over time.
+/// Return the moods of a character: the one set in its life layers, and those requested over time.
 inline Ref<Moods> moods_of(const Ref<Life>& life, const Ref<Track>& track) {
     return lang::made<Moods>(lang::made<Mood>(life->valence, life->arousal, life->intensity), track->moods);
 }
@@ -134,7 +134,7 @@ inline List<std::tuple<double, Ref<Mood>>> moods_between(const Ref<Moods>& moods
     return out;
 }
 
-/// Return what a mode makes of the amounts, in a mood.
+/// Return the factors of the amounts for a mode and a mood.
 inline Ref<Manner> ways_in(const Ref<Manner>& ways, const Ref<Mood>& mood) {
     if (mood->neutral()) {
         return ways;
@@ -143,9 +143,9 @@ inline Ref<Manner> ways_in(const Ref<Manner>& ways, const Ref<Mood>& mood) {
     return life::scaled(ways, of->breathing, of->breath_rate, of->aversion_rate, of->saccade_rate, of->blinks);
 }
 
-/// Return what is looked at from `start` to before `end`; the first begins at `start`.
+/// Return the targets of the gaze from `start` to before `end`; the first begins at `start`.
 ///
-/// The latest look holds until it ends or another of its importance or more begins; a lesser one waits beneath.
+/// The latest look holds until it ends or another of at least the same importance begins; a less important one waits.
 inline List<Ref<GazeTarget>> targets_between(const Ref<Track>& track, double start, double end) {
     List<std::tuple<double, int, int>> changes;
     for (int n2 = 0; n2 < lang::len(track->looks); n2++) {
@@ -172,9 +172,9 @@ inline List<Ref<GazeTarget>> targets_between(const Ref<Track>& track, double sta
         keys.push_back(std::tuple<double, int>{std::get<0>(c), std::get<1>(c)});
     }
     changes = lang::ordered(changes, keys);
-    List<int> looks; // places of looks, the most important first; those beneath are older or lesser
+    List<int> looks; // indices of looks, the most important first; the others are older or less important
     Map<std::string, List<double>> places;
-    for (const auto& place : track->places) { // of a point that is told again and again there are thousands
+    for (const auto& place : track->places) { // a point that is sent again and again has thousands
         if (place->start < start) {
             places[place->name] = place->point;
         }

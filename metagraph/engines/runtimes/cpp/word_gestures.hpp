@@ -1,10 +1,10 @@
-// Gestures that go with words, from the words alone: greetings, denial, doubt, contrast, lists, who and where is meant,
-// emphasis, and a beat where nothing of that is said.
+// Gestures that go with words, from the words alone: greetings, denial, doubt, contrast, lists, persons and places,
+// emphasis, and a beat where there is none of these.
 //
 // After the idea of BEAT (Cassell, Vilhjalmsson and Bickmore, 2001): a text's words propose gestures by rules and a
-// lexicon that anybody can edit, and of those that would get in each other's way the weaker are left out. A gesture
-// that means something leads its word by more than a beat does (ter Bekke et al. 2024: its stroke by some 0.2 s). All
-// other numbers are ours. Times are seconds from where the text begins.
+// lexicon that anybody can edit, and the weaker ones of those that would collide are left out. A gesture with a meaning
+// precedes its word by more than a beat does (ter Bekke et al. 2024: its stroke by some 0.2 s). All other numbers are
+// ours. Times are seconds from where the text begins.
 //
 // Translated from metagraph/speech/word_gestures.py; change that, and translate anew.
 #pragma once
@@ -80,9 +80,9 @@ inline int sentence_end(const Ref<Alphabet>& alphabet, const List<std::string>& 
 
 }  // namespace word_gestures
 
-/// What some words propose. words: small letters; several in a row for a phrase. tags: of a gesture of the arms, the
-/// best first; of those a character has the first counts. head: what it does at the same time, "nod", "shake" or
-/// nothing. strength: which of two wins.
+/// A gesture that some words propose. words: small letters; several in a row for a phrase. tags: of a gesture of the
+/// arms, the best first; the first one that the character has counts. head: its movement at the same time: "nod",
+/// "shake" or nothing. strength: the stronger of two rules wins.
 struct GestureRule {
     List<std::string> words;
     List<std::string> tags;
@@ -98,8 +98,8 @@ struct GestureRule {
         : words(std::move(words_)), tags(std::move(tags_)), head(std::move(head_)), strength(strength_) {}
 };
 
-/// A lexicon. question, exclamation: what a sentence's end proposes for its last word that is not small. clause: what
-/// one proposes in which no word does.
+/// A lexicon. question, exclamation: proposed at the end of a sentence, for its last content word. clause: proposed for
+/// a clause without other proposals.
 struct GestureWords {
     List<Ref<GestureRule>> rules;
     std::string language;
@@ -121,7 +121,7 @@ struct GestureWords {
             clause(std::move(clause_)) {}
 };
 
-/// A word of a text. plain: in small letters. mark: what stands behind it.
+/// A word of a text. plain: in small letters. mark: the punctuation after it.
 struct TextWord {
     std::string text;
     std::string plain;
@@ -133,7 +133,7 @@ struct TextWord {
         : text(std::move(text_)), plain(std::move(plain_)), start(start_), end(end_), mark(std::move(mark_)) {}
 };
 
-/// When a synthesiser says a word.
+/// A word with the times at which a synthesiser says it.
 struct ToldWord {
     double start;
     double end;
@@ -142,7 +142,8 @@ struct ToldWord {
         : start(start_), end(end_) {}
 };
 
-/// A gesture that goes with a word. do: "gesture", "nod" or "shake". at: of its stroke. tags: none for the head's.
+/// A gesture that goes with a word. do: "gesture", "nod" or "shake". at: time of its stroke. tags: empty for gestures
+/// of the head.
 struct ProposedGesture {
     std::string layer;
     double at;
@@ -167,8 +168,8 @@ struct ProposedGesture {
             do_(std::move(do_)) {}
 };
 
-/// What is asked for a gesture. at: seconds of the session, from which on it may begin. stroke: when its stroke is
-/// wanted, None for the head's. late: by how much it may come late.
+/// The request for a gesture. at: the earliest second of the session at which it may begin. stroke: the time of its
+/// stroke, None for the head. late: by how many seconds it may come late.
 struct GestureAsk {
     std::string do_;
     std::string layer;
@@ -193,7 +194,7 @@ struct GestureAsk {
             late(late_) {}
 };
 
-/// A word, how many letters of the text there are up to its end, and the mark behind it.
+/// A word, the number of letters of the text up to its end, and the mark after it.
 struct SplitWord {
     std::string text;
     int end;
@@ -205,10 +206,10 @@ struct SplitWord {
 
 namespace word_gestures {
 
-/// Return a text's words with their times: as a synthesiser told them, else as long as lips would take.
+/// Return a text's words with their times: those of a synthesiser, else as long as lips would take.
 ///
-/// told: of the words in order; those beyond are left out. seconds: how long all of it takes, where that alone is
-/// known.
+/// told: the times of the words in order; words without times are left out. seconds: how long all of it takes, if only
+/// that is known.
 inline List<Ref<TextWord>> words_of(
     const Ref<Alphabet>& alphabet,
     const std::string& text,
@@ -249,7 +250,7 @@ inline bool _is_letter(const Ref<Alphabet>& alphabet, const std::string& letter)
     return kind == "syllable" || kind == "letter";
 }
 
-/// Whether there are words among letters, so that there is something to say.
+/// Return whether letters contain words, so that there is something to say.
 inline bool telling(const Ref<Alphabet>& alphabet, const List<std::string>& letters) {
     bool is_any = false;
     for (const auto& letter : letters) {
@@ -296,10 +297,10 @@ inline List<Ref<SplitWord>> _split(const Ref<Alphabet>& alphabet, const List<std
     return out;
 }
 
-/// Return the gestures that go with words, in order, none in another's way.
+/// Return the gestures that go with words, in order and without collisions.
 ///
-/// arms: tags that a character's gestures of the arms have; what it has none for is not proposed. head: whether the
-/// head moves. small: words that say little by themselves.
+/// arms: tags of the character's gestures of the arms; others are not proposed. head: whether the head moves. small:
+/// words that say little by themselves.
 inline List<Ref<ProposedGesture>> proposed_for(
     const List<Ref<TextWord>>& words,
     const Set<std::string>& arms,
@@ -352,7 +353,7 @@ inline List<Ref<ProposedGesture>> proposed_for(
     return lang::ordered(kept, keys);
 }
 
-/// Return the rule with the longest phrase that begins at a word, and how many words that has; 0 where none does.
+/// Return the rule with the longest phrase that begins at a word, and the number of its words; 0 if there is none.
 inline std::tuple<Ref<GestureRule>, int> _fitting(
     const Ref<GestureWords>& lexicon,
     const List<Ref<TextWord>>& words,
@@ -372,7 +373,7 @@ inline std::tuple<Ref<GestureRule>, int> _fitting(
     return std::tuple<Ref<GestureRule>, int>{best, longest};
 }
 
-/// Whether a phrase is said from a word on, and not over a pause.
+/// Return whether a phrase begins at a word, without a pause inside it.
 inline bool _says(const List<Ref<TextWord>>& words, int first, const List<std::string>& parts) {
     if (first + lang::len(parts) > lang::len(words)) {
         return false;
@@ -423,8 +424,8 @@ inline List<Ref<ProposedGesture>> _of(
     return out;
 }
 
-/// Leave out what is too near to something stronger of its layer; of equals the earlier stays. The same tag twice in a
-/// row needs more room.
+/// Leave out gestures that are too near to a stronger one of their layer; of two equal ones the earlier stays. The same
+/// tag twice in a row needs more room.
 inline List<Ref<ProposedGesture>> _spaced(const List<Ref<ProposedGesture>>& every) {
     List<Ref<ProposedGesture>> kept;
     List<std::tuple<double, double>> keys;
@@ -458,8 +459,8 @@ inline bool _in_the_way(const Ref<ProposedGesture>& one, const Ref<ProposedGestu
     return std::abs(one->at - other->at) < room;
 }
 
-/// Return what is asked for gestures of a text that begins at `at` seconds of the session. Those that could not be in
-/// time are refused rather than made late.
+/// Return the requests for the gestures of a text that begins at `at` seconds of the session. Gestures that cannot be
+/// in time are refused, not made late.
 inline List<Ref<GestureAsk>> gesture_asks(const List<Ref<ProposedGesture>>& every, double at) {
     List<Ref<GestureAsk>> out;
     for (const auto& one : every) {
@@ -480,8 +481,8 @@ inline List<Ref<GestureAsk>> gesture_asks(const List<Ref<ProposedGesture>>& ever
     return out;
 }
 
-/// Return after how many letters the first sentence of a text ends, 0 where it goes on. over: whether the text does
-/// not.
+/// Return the number of letters after which the first sentence of a text ends, 0 if it goes on. over: whether the text
+/// is complete.
 inline int sentence_end(const Ref<Alphabet>& alphabet, const List<std::string>& letters, bool over) {
     bool some = false;
     for (int n = 0; n < lang::len(letters); n++) {

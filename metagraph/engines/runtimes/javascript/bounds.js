@@ -1,15 +1,16 @@
 /**
- * By when each meta action of a plan has to be over.
+ * The times by which the meta actions of a plan have to be over.
  *
  * Translated from metagraph/playback/planning/bounds.py; change that, and translate anew.
  */
 
 
-export const LOOKED_AT = 6; // how many that follow a meta action are told
+export const LOOKED_AT = 6; // how many of those that follow a meta action are listed
 
 /**
- * A meta action with when the next more important one begins (limit), and the next as important that was asked for (wish);
- * infinity where there is none. after: those as important that were asked for and say how late they may be, the next first.
+ * A meta action and its bounds. limit: when the next more important one begins; wish: when the next equally important
+ * request begins; infinity if there is none. after: equally important requests that say how late they may be, the next one
+ * first.
  *
  * meta: MetaAction; limit: number; wish: number; after: MetaAction[].
  */
@@ -23,7 +24,7 @@ export class Bound {
 }
 
 /**
- * The first of some meta actions of a rank, written or asked for, and when it starts.
+ * The first of some meta actions of a rank, written or requested, and when it starts.
  *
  * rank: number; written: boolean; start: number.
  */
@@ -36,7 +37,7 @@ export class _First {
 }
 
 /**
- * Return each meta action with what bounds it.
+ * Return each meta action with its bounds.
  * @param {MetaAction[]} metas
  * @returns {Bound[]}
  */
@@ -79,7 +80,7 @@ export function bounds(metas) {
 }
 
 /**
- * Return when a meta action may begin at the earliest. One whose stroke is judged is placed where that comes.
+ * Return the earliest time at which a meta action may begin. One whose stroke is judged is placed where its stroke comes.
  * @param {MetaAction} meta
  * @returns {number}
  */

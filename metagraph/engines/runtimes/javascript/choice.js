@@ -1,7 +1,8 @@
 /**
- * Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language can mix alike.
+ * Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language mixes in the same
+ * way.
  *
- * Nothing is remembered between draws, so changing one request leaves the draws of all others as they were.
+ * Draws remember nothing, so a change of one request does not change the draws of the others.
  *
  * Translated from metagraph/playback/planning/choice.py; change that, and translate anew.
  */
@@ -14,7 +15,7 @@ export const ALL = 4294967296; // numbers of 32 bits
 /**
  * Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero byte, then mixed.
  *
- * The seed, mixed, is xored into FNV's offset basis.
+ * The mixed seed is xored into FNV's offset basis.
  * @param {number} seed
  * @param {...string} words
  * @returns {number}
@@ -24,7 +25,7 @@ export function key32(seed, ...words) {
 }
 
 /**
- * Return what draws of one key have in common: the hash of a seed and words before it is mixed.
+ * Return the hash of a seed and words before it is mixed, which all draws of one key share.
  * @param {number} seed
  * @param {...string} words
  * @returns {number}
@@ -48,7 +49,7 @@ export function uniform(seed, ...words) {
 }
 
 /**
- * Return what `uniform` does with one word more than a key has.
+ * Return the number that `uniform` returns for a key and one more word.
  * @param {number} key
  * @param {string} purpose
  * @returns {number}
@@ -58,8 +59,8 @@ export function chanceOf(key, purpose) {
 }
 
 /**
- * Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, which any language can do alike: `a = ln(1 +
- * (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+ * Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, in a way that any language can compute: `a =
+ * ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
  * @param {number} mean
  * @param {number} deviation
  * @param {number} u
@@ -74,7 +75,7 @@ export function logNormal(mean, deviation, u, v) {
 }
 
 /**
- * Return one of the ids, as `picked` does.
+ * Return one of the ids, chosen as by `picked`.
  * @param {number} seed
  * @param {string} key
  * @param {string} purpose
@@ -88,8 +89,8 @@ export function pick(seed, key, purpose, weights) {
 /**
  * Return one of the ids, id k with probability weight_k / sum.
  *
- * Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or removing one
- * candidate changes the choice only where that candidate wins. Raises ValueError when no weight is positive.
+ * Each id draws its own exponential time, -log(u_k) / weight_k, and the shortest wins. So adding or removing a candidate
+ * changes the choice only if that candidate wins. Raises ValueError when no weight is positive.
  * @param {number} key
  * @param {string} purpose
  * @param {Map<string, number>} weights

@@ -1,6 +1,6 @@
 /**
- * Find where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by how much of
- * it shows.
+ * Find the goals that contacts set for the hands at a time: contacts of the cue that plays and of the loops under it, each
+ * weighted by how much of it shows.
  *
  * Translated from metagraph/playback/posing/contact_goals.py; change that, and translate anew.
  */
@@ -12,7 +12,7 @@ import { cueSeconds, cueWeight, ease, seamLeft } from "./cue_times.js";
 export const LEAST = 1e-06; // of a hand: goals with less weight are not solved
 
 /**
- * Return where a layer wants the hands at a time.
+ * Return a layer's goals for the hands at a time.
  *
  * `cue` is the one that plays, if it has motion. `place` is the index of the rest in force, -1 for none. `strength` is how
  * much of the arms the layer moves, 0..1.
@@ -37,7 +37,7 @@ export function layerGoals(rig, project, plan, cue, place, time, strength) {
     }
     if (cue.action.contacts.length > 0) {
       const left = seamLeft(cue, time);
-      if (left > 0) { // what the cycle before wanted at its end, as far as its pose is still shown
+      if (left > 0) { // the goals at the end of the previous cycle, as far as its pose still shows
         out.push(..._goals(rig, project, cue.action, cue.cycleTo, shown.map((w) => strength * left * w)));
       }
       const share = strength * (1 - left);
@@ -57,7 +57,7 @@ export function layerGoals(rig, project, plan, cue, place, time, strength) {
 }
 
 /**
- * Return where a loop wants the hands, less what the cue above it covers.
+ * Return a loop's goals for the hands, reduced by the cue above it.
  * @param {ContactRig} rig
  * @param {Project} project
  * @param {Rest} rest

@@ -1,8 +1,8 @@
 /**
- * Keeping hands in contact with the body, and out of it: two-bone arms brought to where they should be.
+ * Keep hands in contact with the body, and outside it, by moving two-bone arms to their goals.
  *
- * The body's parts are capsules, each fixed to a joint. Rotations are quaternions xyzw, lengths metres; places are those in
- * a rig's list of joints. Worked out one pose at a time, in plain numbers, the same in all languages.
+ * The body's parts are capsules, each fixed to a joint. Rotations are quaternions xyzw, lengths metres; a place is an index
+ * into a rig's list of joints. The code computes one pose at a time, with plain numbers, the same in all languages.
  *
  * Translated from metagraph/motion/contact_solve.py; change that, and translate anew.
  */
@@ -23,7 +23,7 @@ export const FOREARM = 1; // pushed out, from the elbow to the wrist
 export const HAND = 2; // pushed out
 
 /**
- * Places of an arm's joints, and of all joints from its upper arm on, parents first.
+ * The places of an arm's joints, and of all joints from its upper arm on, parents first.
  *
  * upper: number; lower: number; hand: number; below: number[].
  */
@@ -37,9 +37,9 @@ export class ContactArm {
 }
 
 /**
- * A part of the body. joint, to: the places its line's ends are fixed to; a, b: where, in those joints' own spaces. arm: 0
- * left, 1 right, -1 of neither. kind: whether it is pushed out of others: OBSTACLE is not; FOREARM runs from the elbow to
- * the wrist; HAND.
+ * A part of the body. joint, to: the places of the joints that carry the ends of its line; a, b: where the ends are, in the
+ * spaces of those joints. arm: 0 left, 1 right, -1 neither. kind: whether it is pushed out of others: an OBSTACLE is not; a
+ * FOREARM, from the elbow to the wrist, and a HAND are.
  *
  * joint: number; a: [number, number, number]; to: number; b: [number, number, number]; radius: number; arm: number; kind:
  * number.
@@ -57,9 +57,9 @@ export class BodyCapsule {
 }
 
 /**
- * What of a skeleton contacts need. joints: theirs, parents first. parents: for each the place of the nearest one above,
- * which has to be its parent; -1 for a root. places: names of joints to their places. arms: left, right; hands: the names of
- * their hands. contacts, guard: what is on.
+ * The part of a skeleton that contacts need. joints: parents first. parents: for each joint, the place of its parent, -1 for
+ * a root. places: joint name -> place. arms: left, right; hands: the names of their hands. contacts, guard: whether each is
+ * on.
  *
  * joints: number[]; parents: number[]; places: Map<string, number>; arms: ContactArm[]; hands: string[]; capsules:
  * BodyCapsule[]; contacts: boolean; guard: boolean.
@@ -93,8 +93,8 @@ export class HandGoal {
 }
 
 /**
- * A pose of a rig's joints: `local` rotations and `moved` translations in their parents' space, `turned` and `at` in the
- * character's, which `spread` works out.
+ * A pose of a rig's joints: `local` rotations and `moved` translations are in the parents' space; `turned` and `at` are in
+ * the character's space, and `spread` computes them.
  *
  * local: [number, number, number, number][]; moved: [number, number, number][]; turned: [number, number, number, number][];
  * at: [number, number, number][].
@@ -109,7 +109,7 @@ export class ContactPose {
 }
 
 /**
- * Work out where all joints are.
+ * Compute where all joints are.
  * @param {ContactRig} rig
  * @param {ContactPose} pose
  */
@@ -142,8 +142,8 @@ function _join(rig, pose, place) {
 }
 
 /**
- * Bring hands to their goals, then hands and forearms out of the body; return whether anything moved. The joints' places
- * have to be known (`spread`).
+ * Move hands to their goals, then push hands and forearms out of the body; return whether anything moved. Call `spread`
+ * first.
  * @param {ContactRig} rig
  * @param {ContactPose} pose
  * @param {HandGoal[]} goals
@@ -195,7 +195,7 @@ function _onArm(rig, place, arm) {
 }
 
 /**
- * Bring a hand to the weighted mean of its goals. wrist, hand: where and how it was without any.
+ * Move a hand to the weighted mean of its goals. wrist, hand: its position and rotation without goals.
  * @param {ContactRig} rig
  * @param {ContactPose} pose
  * @param {HandGoal[]} goals
@@ -243,7 +243,7 @@ function _hold(rig, pose, goals, side, wrist, hand) {
 }
 
 /**
- * Return a hand's turn, as near to it as the wrist may be turned from how the hand was.
+ * Return a hand's rotation, limited to what the wrist allows from the hand's earlier rotation.
  * @param {[number, number, number, number]} hand
  * @param {[number, number, number, number]} turn
  * @returns {[number, number, number, number]}
@@ -264,8 +264,8 @@ function _withinWrist(hand, turn) {
 }
 
 /**
- * Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it. side_of: where a straight
- * arm bends to, in the upper arm's own space.
+ * Move a wrist to a goal, or as near as the arm reaches, with the elbow on the side to which it is bent; rotate the hand.
+ * side_of: the direction in which a straight arm bends, in the upper arm's own space.
  * @param {ContactRig} rig
  * @param {ContactPose} pose
  * @param {number} side
@@ -330,11 +330,11 @@ function _above(rig, pose, place) {
 }
 
 /**
- * Push forearms and hands out of what they are inside of, by the least shift of the wrists; return whether any was. held:
- * how much each hand is kept somewhere, and so is not pushed.
+ * Push forearms and hands out of the capsules they are inside, by the smallest shift of the wrists; return whether any was
+ * inside. held: how much a contact holds each hand, which is then not pushed.
  *
- * An arm that goes through something is pushed out to one side before its middle and to the other after: towards the middle
- * it is pushed ever less, so that it does not jump.
+ * An arm that passes through a capsule is pushed to one side before the middle and to the other side after it. The push gets
+ * weaker towards the middle, so that the arm does not jump.
  * @param {ContactRig} rig
  * @param {ContactPose} pose
  * @param {number[]} held
@@ -417,8 +417,8 @@ function _balls(rig, ends) {
 }
 
 /**
- * Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for each side how much
- * of that is to be done, which the first pass finds.
+ * Return the shift of a wrist that brings its arm out of all other capsules, or closer to that. whole: for each side, the
+ * share of the shift to apply, which the first pass finds.
  * @param {ContactRig} rig
  * @param {[number, number, number][]} ends
  * @param {[number, number, number, number][]} balls
@@ -486,8 +486,8 @@ function _shift(rig, ends, balls, side, held, across, whole, first) {
 }
 
 /**
- * Return how far along the line that begins at `ends[i]` the shortest way from that at `ends[k]` ends, 0..1. Of lines side
- * by side, where it may end anywhere, the middle counts more the less they cross.
+ * Return where on the line that begins at `ends[i]` the shortest way from the line at `ends[k]` ends, 0..1. For nearly
+ * parallel lines, where it could end anywhere, the result moves towards the middle.
  * @param {[number, number, number][]} ends
  * @param {number} i
  * @param {number} k
@@ -521,7 +521,7 @@ function _along(ends, i, k) {
 }
 
 /**
- * Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, and its length.
+ * Return the shortest way from the line that begins at `ends[k]` to the one at `ends[i]`, and its length.
  * @param {[number, number, number][]} ends
  * @param {number} i
  * @param {number} k

@@ -1,8 +1,8 @@
 /**
- * Contacts of an action: where on the body a hand stays, or goes along, for a while of its clip.
+ * Contacts of an action: where on the body a hand stays, or moves along it, for a part of its clip.
  *
- * A contact says where the wrist is in the space of a joint, and how the hand is turned there, so that it holds whatever
- * else moves that joint: a breathing spine, a layer below, a body of another shape.
+ * A contact gives the position of the wrist and the rotation of the hand in the space of a joint. So it holds whatever else
+ * moves that joint: a breathing spine, a layer below, a body of another shape.
  *
  * Translated from metagraph/motion/contact_spans.py; change that, and translate anew.
  */
@@ -10,7 +10,7 @@
 
 export const HANDS = ["left", "right"];
 export const PLACES = ["palm", "fingertips", "back", "wrist"];
-export const EASE = 0.15; // seconds in which a hand comes to a contact, and leaves it, where nothing else is said
+export const EASE = 0.15; // seconds in which a hand comes to a contact, and leaves it, by default
 export const SETTLES = 0.3; // seconds it takes at least where the contact lasts: what it touches may be far from its place
 
 /**
@@ -28,12 +28,12 @@ export class ContactKey {
 }
 
 /**
- * A hand kept where it is on the body.
+ * A hand that stays at a place on the body.
  *
- * hand: left or right. place: what of the hand touches: palm, fingertips, back, wrist. to: the name of the joint it stays
- * with. start, end: clip seconds. keys: one for a hand that stays, more, in order, for one that moves over the body.
- * ease_in, ease_out: seconds inside the span in which it comes and goes; none where the action begins, or ends, within the
- * span.
+ * hand: left or right. place: the part of the hand that touches: palm, fingertips, back, wrist. to: the name of the joint it
+ * stays with. start, end: clip seconds. keys: one for a hand that stays, more, in order, for one that moves over the body.
+ * ease_in, ease_out: seconds inside the span in which the contact sets in and fades out; they do not apply if the action
+ * begins, or ends, within the span.
  *
  * hand: string; place: string; to: string; start: number; end: number; keys: ContactKey[]; easeIn: number; easeOut: number.
  */
@@ -51,7 +51,7 @@ export class ContactSpan {
 }
 
 /**
- * Return how much a hand is held at clip seconds, 0..1. first, last: what of the clip plays.
+ * Return how much a hand is held at a second of the clip, 0..1. first, last: the seconds of the clip that play.
  * @param {ContactSpan} span
  * @param {number} seconds
  * @param {number} first
@@ -76,7 +76,7 @@ export function contactWeight(span, seconds, first, last) {
 }
 
 /**
- * Return where a hand is at clip seconds: between two keys on the straight line.
+ * Return where a hand is at a second of the clip, interpolated linearly between two keys.
  * @param {ContactSpan} span
  * @param {number} seconds
  * @returns {ContactKey}

@@ -1,5 +1,5 @@
 /**
- * How an action would play for a request: from when, for how long, and how late.
+ * How an action would play for a request: when it begins, how long it lasts and how late it is.
  *
  * A gesture waits for its stroke or cuts its preparation to catch up with it; its hold is stretched, and its retraction may
  * be cut (Borer et al., section 6.2).
@@ -19,7 +19,7 @@ export const RETRACTION = 0.4; // seconds in which an action whose retraction is
 export const SHARED = 0.25; // seconds within which two strokes may be one
 
 /**
- * How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue.
+ * How an action would play: from `start` on, for `length` seconds, at least `shortest`; the other fields are those of a cue.
  *
  * start: number; entry: number; length: number; shortest: number; holdFrom: number; holdTo: number; hold: number; tempo:
  * number.
@@ -38,7 +38,8 @@ export class CueShape {
 }
 
 /**
- * Return how an action would play for a request from `now` on, or as a step on the way to it. speed: a factor of its own.
+ * Return how an action would play for a request from `now` on, or as a step on the way to it. speed: a factor of the
+ * action's own speed.
  * @param {Project} project
  * @param {Action} action
  * @param {?MetaRequest} request
@@ -100,7 +101,7 @@ export function shapeOf(project, action, request, now, speed) {
 }
 
 /**
- * Whether something that plays so is over by a limit.
+ * Return whether something with this shape is over by a limit.
  * @param {CueShape} shape
  * @param {number} limit
  * @returns {boolean}
@@ -110,8 +111,8 @@ export function fitsBefore(shape, limit) {
 }
 
 /**
- * Return by how many seconds an action that plays so comes late, at its stroke where one is asked for; less than 0 before
- * its time.
+ * Return by how many seconds an action with this shape comes late, measured at its stroke if the request has one; below 0 if
+ * it comes early.
  * @param {Project} project
  * @param {Action} action
  * @param {MetaRequest} request
@@ -128,7 +129,7 @@ export function lateness(project, action, request, shape) {
 }
 
 /**
- * Return by how many seconds a request may come late, 0 where it does not say.
+ * Return by how many seconds a request may come late, 0 if it does not say.
  * @param {MetaRequest} request
  * @returns {number}
  */
@@ -137,7 +138,7 @@ export function slackOf(request) {
 }
 
 /**
- * Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked for.
+ * Return how many seconds a gesture takes if its retraction is cut and its hold is left out, unless the request has a hold.
  * @param {Project} project
  * @param {Action} action
  * @param {CueShape} shape
@@ -161,7 +162,7 @@ export function hurried(project, action, shape) {
 }
 
 /**
- * Whether two requests may be met by one stroke.
+ * Return whether one stroke may meet two requests.
  * @param {MetaRequest} request
  * @param {MetaRequest} other
  * @returns {boolean}
@@ -178,7 +179,7 @@ export function mayShare(request, other) {
 }
 
 /**
- * Whether an action is what a request for any asks for.
+ * Return whether an action fits a request that does not name one.
  * @param {Action} action
  * @param {MetaRequest} request
  * @returns {boolean}
@@ -190,7 +191,7 @@ export function meets(action, request) {
 }
 
 /**
- * Return what a meta action asks for; of a remainder, for as long as is left. A model says no length.
+ * Return the request of a meta action; for a remainder, with the duration that is left. What a model wrote has no duration.
  * @param {MetaAction} meta
  * @param {number} now
  * @returns {MetaRequest}

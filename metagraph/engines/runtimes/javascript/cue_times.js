@@ -1,6 +1,6 @@
 /**
- * Compute what of a cue, or of a stance's loop, shows at a time, with plain numbers. `player` and `Cue.clip_seconds` do the
- * same with arrays.
+ * Compute how much of a cue, or of a stance's loop, shows at a time, with plain numbers. `player` and `Cue.clip_seconds` do
+ * the same with arrays.
  *
  * Translated from metagraph/playback/posing/cue_times.py; change that, and translate anew.
  */
@@ -87,8 +87,8 @@ export function cueSeconds(cue, time) {
 }
 
 /**
- * Return how much of the way from where a cycle begins to where the one before it ended is still added at a time, 0..1, so
- * that a cue that repeats goes on without a jump.
+ * Return the share, 0..1, of the offset between the end of one cycle and the beginning of the next that is still added at a
+ * time, so that a cue that repeats does not jump.
  * @param {Cue} cue
  * @param {number} time
  * @returns {number}

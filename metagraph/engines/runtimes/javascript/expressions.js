@@ -4,10 +4,10 @@
  * What is known and followed here: speakers raise their brows on stressed words (Cave et al. 1996), from about 60 ms before
  * the accent (Flecha-Garcia 2010), and where they ask (Ekman 1979); greeting, people flash their brows for about a third of
  * a second (Eibl-Eibesfeldt 1972); felt smiles come and go in 2/3 to 4 s and raise the cheeks (Ekman and Friesen 1982),
- * posed ones may stay. So a mood's face comes up and goes back to part of it instead of standing there. How much, how often
- * and for which tags is ours.
+ * posed ones may stay. So the face of a mood rises and falls back to a part of it, instead of being constant. How much, how
+ * often and for which tags is ours.
  *
- * Where `Life.expressions` is 0, or at full stillness, what a mood shows stands as it is and nothing else comes.
+ * If `Life.expressions` is 0, or at full stillness, the face of a mood is constant and nothing else is added.
  *
  * Translated from metagraph/playback/life/expressions.py; change that, and translate anew.
  */
@@ -58,8 +58,8 @@ export const MARKS = ["?", "？", "؟"]; // at the end of questions
 export const DUCHENNE = 0.2; // the smile from which on cheeks rise
 
 /**
- * What a face shows beside lids and lips: weights of its channels. brow_up raises the brows' inner ends alone, brows the
- * whole of them. One is filled again for each time (`shown_face`, `answer`, `settle`).
+ * The weights of a face's channels, without lids and lips. brow_up raises only the inner ends of the brows, brows the whole
+ * of them. The same object is filled again for each time (`shown_face`, `answer`, `settle`).
  *
  * smile: number; frown: number; browDown: number; browUp: number; brows: number; cheeks: number.
  */
@@ -106,8 +106,8 @@ export function swellsOn(track, seed, cut, drawn, before) {
 }
 
 /**
- * Return the lane of emphases filled from `cut` to `drawn` seconds: on as many stressed syllables as `accent_brows` says, at
- * the end of questions, and where a reaction begins.
+ * Return the lane of emphases filled from `cut` to `drawn` seconds: on the share of stressed syllables that `accent_brows`
+ * says, at the end of questions, and where a reaction begins.
  * @param {Life} life
  * @param {Track} track
  * @param {Voices} voices
@@ -164,7 +164,7 @@ export function emphasesOn(life, track, voices, seed, cut, drawn, before) {
 }
 
 /**
- * Whether something said is a question, by its last sign.
+ * Return whether a speech is a question, by its last sign.
  * @param {Speech} speech
  * @returns {boolean}
  */
@@ -174,7 +174,7 @@ export function asks(speech) {
 }
 
 /**
- * Fill in the face of a mood at a time, and of what was drawn.
+ * Fill in the face at a time, from the mood and the drawn events.
  * @param {FaceShown} face
  * @param {Life} life
  * @param {Lane} swells
@@ -253,7 +253,7 @@ export function answer(face, life, tags, start, end, seconds) {
 }
 
 /**
- * Keep all within 0..1, and raise the cheeks with a smile.
+ * Clamp all weights to 0..1, and raise the cheeks with a smile.
  * @param {FaceShown} face
  */
 export function settle(face) {

@@ -1,12 +1,13 @@
 /**
- * Actions and stances by what they are called.
+ * Find actions and stances by id or name.
  *
  * Translated from metagraph/playback/planning/finding.py; change that, and translate anew.
  */
 
 
 /**
- * Return the action of an id or, failing that, a name; of several of one name the likeliest. layer: None for any.
+ * Return the action with an id or, failing that, with a name; of several with the same name, the likeliest. layer: None for
+ * any.
  * @param {MetaGraph[]} graphs
  * @param {string} word
  * @param {?string} layer
@@ -33,7 +34,7 @@ export function actionCalled(graphs, word, layer) {
 }
 
 /**
- * Return the stance of an id or, failing that, a name, in the first layer that has one so called.
+ * Return the stance with an id or, failing that, with a name, in the first layer that has one.
  * @param {MetaGraph[]} graphs
  * @param {string} word
  * @param {?string} layer

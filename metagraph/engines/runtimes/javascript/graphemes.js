@@ -1,7 +1,8 @@
 /**
- * From letters to mouth shapes: what a mouth may do when neither sound nor phones of a line are there.
+ * From letters to mouth shapes: what a mouth does if a line has neither sound nor phones.
  *
- * English spelling is read by a few rules; other alphabets by their vowels, what is unknown by turns of open and shut.
+ * A few rules read English spelling. Other alphabets are read by their vowels. Unknown letters open and shut the mouth in
+ * turn.
  *
  * Translated from metagraph/playback/life/graphemes.py; change that, and translate anew.
  */
@@ -231,7 +232,7 @@ function _unknown(alphabet, letter, before) {
 }
 
 /**
- * Return each word and how many characters' time of pause follows it.
+ * Return each word, and the pause after it, measured in characters.
  * @param {Alphabet} alphabet
  * @param {string} text
  * @returns {[string, number][]}
@@ -259,7 +260,7 @@ export function splitWords(alphabet, text) {
 }
 
 /**
- * A sound of a text. shape: "" for a pause. size: characters' time. strength: of a syllable, 0 for what is none.
+ * A sound of a text. shape: "" for a pause. size: characters' time. strength: of a syllable, 0 for anything else.
  *
  * shape: string; size: number; strength: number.
  */
@@ -274,7 +275,7 @@ export class SpelledSound {
 /**
  * Return a word's sounds, in turn.
  *
- * Content words are longer than the words between them; the first vowel bears the stress more often than not.
+ * Content words are longer than the words between them. The first vowel usually has the stress.
  * @param {Alphabet} alphabet
  * @param {string} word
  * @returns {SpelledSound[]}
@@ -297,7 +298,7 @@ export function sounds(alphabet, word) {
 }
 
 /**
- * Something said, as its letters tell: pieces in time, times and strengths (0..1) of its syllables.
+ * Something said, timed by its letters: pieces in time, and times and strengths (0..1) of its syllables.
  *
  * pieces: MouthPiece[]; peaks: number[]; strengths: number[].
  */
@@ -339,7 +340,8 @@ export function readAloud(alphabet, text) {
 }
 
 /**
- * Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean is a syllable.
+ * Return how long a letter takes, measured in characters, by its code point: a Chinese, Japanese or Korean one is a
+ * syllable.
  * @param {number} code
  * @returns {number}
  */
@@ -353,7 +355,7 @@ export function measureLetter(code) {
 }
 
 /**
- * Return what a text says in `duration` seconds; nothing where no letter of it is known.
+ * Return the sounds of a text that lasts `duration` seconds; none if it has no known letter.
  * @param {Alphabet} alphabet
  * @param {string} text
  * @param {number} duration

@@ -1,5 +1,6 @@
 /**
- * What asks do to a running plan: what they take back, what lasts from then on, and which layers have to be planned again.
+ * The effect of requests on a running plan: what they take back, what lasts from then on, and which layers have to be
+ * planned again.
  *
  * Translated from metagraph/playback/planning/hearing.py; change that, and translate anew.
  */
@@ -27,9 +28,9 @@ import { but, isDigits, partedLast } from "./basics.js";
 export const LISTENS = 2; // seconds for which the gaze stays with the partner who interrupts
 
 /**
- * track: what lasts. fresh: what is asked of layers, with what goes on after a pause. withdrawn: ids of what was asked for
- * before and is not any more; stopped: those of them that were taken back and not asked for anew. touched: layers that asks
- * have to do with.
+ * track: lasting items. fresh: requests of layers, with those that continue after a pause. withdrawn: ids of earlier
+ * requests that no longer hold; stopped: those of them that were taken back, not replaced. touched: layers that the requests
+ * affect.
  *
  * track: Track; fresh: MetaRequest[]; withdrawn: Set<string>; stopped: Set<string>; touched: Set<string>.
  */
@@ -44,7 +45,7 @@ export class Heard {
 }
 
 /**
- * Return the asks a request may have been made by: that of its own id, and those of which it would be a part.
+ * Return the ids of the asks from which a request may come: its own id, and those of which it would be a part.
  * @param {string} ident
  * @returns {string[]}
  */
@@ -63,8 +64,8 @@ export function owners(ident) {
 }
 
 /**
- * Return what a request goes with when it is taken back: its `owners`, and what is said that a gesture was made for:
- * "answer" for "answer/2".
+ * Return the ids with which a request is taken back: its `owners`, and the speech that a gesture belongs to: "answer" for
+ * "answer/2".
  * @param {string} ident
  * @returns {string[]}
  */
@@ -78,8 +79,9 @@ export function makers(ident) {
 }
 
 /**
- * Return what asks do. requests, track: of the plan. meant: what is asked for, where speeches may overlap. now: what begins
- * before stays; soon: so for voices. turning: layers whose models perform one thing in one mode and another in another.
+ * Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it. now:
+ * everything that begins earlier stays; soon: the same for voices. turning: layers whose models perform differently in
+ * different modes.
  * @param {MetaRequest[]} requests
  * @param {Track} track
  * @param {Meaning} meant
@@ -103,7 +105,7 @@ export function heard(requests, track, meant, now, soon, turning) {
   const words = addSpeeches(meant, track, soon);
   const before = requests.map((r) => r.id);
   before.push(...track.idents());
-  // Who takes everything back still looks at whom it talks with.
+  // A client that takes everything back keeps the look at the user.
   const user = new Set(track.looks.filter((x) => x.start < now && isSameSpot(x.to, named("user"))).map((x) => x.id));
   const taken = new Set([]);
   const stopped = new Set([]);
@@ -119,7 +121,7 @@ export function heard(requests, track, meant, now, soon, turning) {
       taken.add(ident);
     }
   }
-  // Where the models may change stances again means nothing where they always might.
+  // Leave to change stances again means nothing if the models always may.
   const staying = new Set(track.stays.filter((s) => s.on).map((s) => s.layer));
   for (const stay of more.stays) {
     if (stay.on) {
@@ -143,7 +145,7 @@ export function heard(requests, track, meant, now, soon, turning) {
     || meant.steered.length > 0
     || track.modes.some((m) => taken.has(m.id))
     || track.speeches.some((s) => taken.has(s.id));
-  if (turns) { // who talks moves otherwise than who listens
+  if (turns) { // talking and listening characters move differently
     for (const layer of turning) {
       touched.add(layer);
     }
@@ -172,9 +174,9 @@ export function heard(requests, track, meant, now, soon, turning) {
 }
 
 /**
- * What speeches become beside those that are said already. said: all that are new or changed. begun: ids of those of which
- * an earlier one is in them, changed; on: ids of which what is said already goes on. anew: ids under which something else
- * was said before. moods: what is asked for with them.
+ * New speeches, combined with those that are being said. said: all that are new or changed. begun: ids of changed earlier
+ * ones among them; on: ids of those that continue. `anew`: ids under which something else was said before. moods: the moods
+ * requested with them.
  *
  * said: Speech[]; begun: Set<string>; on: Set<string>; anew: Set<string>; moods: MoodFrom[].
  */
@@ -187,7 +189,10 @@ export class AddedSpeeches {
     this.moods = moods;
   }
 
-  /** Return what of a track stays beside these: moods of what goes on last as long as that, where no other is asked for. */
+  /**
+   * Return the part of a track that stays: moods of speeches that continue last as long as these, unless another mood is
+   * requested.
+   */
   leave(track) {
     if (this.on.size === 0) {
       return track;
@@ -213,7 +218,7 @@ export class AddedSpeeches {
 }
 
 /**
- * Return what asks to say something make of a track: a line, something behind a line, or more of one.
+ * Return the effect of asks to say something on a track: a new line, a line after another, or more of one.
  * @param {Meaning} meant
  * @param {Track} track
  * @param {number} soon
@@ -273,8 +278,7 @@ export function addSpeeches(meant, track, soon) {
 }
 
 /**
- * Return what asks do with what is said: it is broken off, paused, gone on with or finished, in turn. requests: of the plan
- * before.
+ * Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the plan before.
  * @param {MetaRequest[]} requests
  * @param {Heard} heard
  * @param {Meaning} meant
@@ -322,7 +326,7 @@ function _steer(requests, heard, meant, now, soon) {
 }
 
 /**
- * A track and requests while asks steer what is said. anew: ids of the requests that are asked for anew; the rest is as in
+ * A track and requests while asks steer speech. `anew`: ids of the requests that are made again; the other fields are as in
  * `Heard`.
  *
  * track: Track; withdrawn: Set<string>; stopped: Set<string>; touched: Set<string>; requests: MetaRequest[]; anew:
@@ -338,12 +342,12 @@ export class SteeredSpeech {
     this.anew = anew;
   }
 
-  /** Return the ids of all of it. */
+  /** Return the ids of everything in it. */
   idents() {
     return [...this.requests.map((r) => r.id), ...this.track.idents()];
   }
 
-  /** Break off an utterance at `stop`, and what was made for it at `now`. */
+  /** Break off an utterance at `stop`, and the requests that belong to it at `now`. */
   interrupt(ident, made, stop, now, soon) {
     if (goesOn(this.track.speeches, ident, soon)) {
       this.track = breakOff(this.track, ident, stop);
@@ -364,7 +368,7 @@ export class SteeredSpeech {
     this.requests = this.requests.filter((r) => !made.has(r.id));
   }
 
-  /** Hold an utterance, and what was made for it and has not had its moment; what has begun goes back. */
+  /** Pause an utterance, and the requests that belong to it and whose moment has not come; those that have begun go back. */
   pause(ident, made, stop, now) {
     if (isPaused(stop)) {
       return;
@@ -391,7 +395,7 @@ export class SteeredSpeech {
     this.requests = kept;
   }
 
-  /** Go on with an utterance that is paused, and with what waits for it. */
+  /** Resume a paused utterance, and the requests that wait for it. */
   resume(ident, made, now, soon) {
     const held = this.track.speeches.find((s) => s.id === ident && isPaused(s.start)) ?? null;
     if (held === null) {
@@ -412,7 +416,7 @@ export class SteeredSpeech {
     this.requests = kept;
   }
 
-  /** Return a request moved by so many seconds, to no earlier than `least`. */
+  /** Return a request moved by a number of seconds, but not to before `least`. */
   moveRequest(request, by, least) {
     const stroke = request.stroke === null ? null : request.stroke + by;
     return but(request, { start: Math.max(least, request.start + by), stroke: stroke });

@@ -1,6 +1,5 @@
 /**
- * What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in. Values; times are
- * seconds.
+ * Requests that last: where to look, what to say, which mode to be in, which stance to stay in. Values; times are seconds.
  *
  * Translated from metagraph/playback/life/items.py; change that, and translate anew.
  */
@@ -20,7 +19,7 @@ import { isSameSpot } from "./spots.js";
 import { but, zip } from "./basics.js";
 
 /**
- * Look at a point or a named point from `start` until `end`, or until the next look. strict: without averting.
+ * Look at a point or a named point from `start` until `end`, or until the next look. strict: without looking away.
  *
  * id: string; start: number; end: number; to: Spot; amount: number; strict: boolean; priority: number.
  */
@@ -37,10 +36,10 @@ export class LookAt {
 }
 
 /**
- * Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower. length:
- * seconds all of it would have taken, where something cut it short. timing: when its words and mouth shapes come, where that
- * was told. skip: seconds of it that were said before a pause. more: whether more of it may come, so that it is not over
- * when it falls silent. over: when it was said that none does, where it had fallen silent.
+ * Something said. line: id of the project's line, None for `text` alone. priority: a higher one interrupts a lower one.
+ * length: seconds that all of it would have taken, if it was cut short. timing: the times of its words and mouth shapes, if
+ * known. skip: seconds of it that were said before a pause. more: whether more of it may come, so that it is not over when
+ * it falls silent. over: when it was finished, if it had fallen silent before.
  *
  * id: string; start: number; end: number; line: ?string; text: string; priority: number; length: ?number; timing:
  * ?LineTiming; skip: number; more: boolean; over: ?number.
@@ -101,7 +100,7 @@ export class PlaceFrom {
 }
 
 /**
- * A blink asked for.
+ * A requested blink.
  *
  * id: string; start: number.
  */
@@ -113,7 +112,8 @@ export class BlinkAt {
 }
 
 /**
- * From `start` on the models change no stance of a layer (or, with `on` false, may again), until `end` or the next of these.
+ * From `start` on, the models change no stance of a layer, or may do so again with `on` false, until `end` or the next item
+ * of this kind.
  *
  * id: string; start: number; layer: string; on: boolean; end: number.
  */
@@ -128,7 +128,7 @@ export class StayFrom {
 }
 
 /**
- * Return the second that what is said counts from: before its start if it goes on after a pause.
+ * Return the second from which the times of a speech count: before its start if it continues after a pause.
  * @param {Speech} speech
  * @returns {number}
  */
@@ -137,7 +137,7 @@ export function findLineStart(speech) {
 }
 
 /**
- * Return how long all of it takes, seconds, with what was said before a pause and what was cut off.
+ * Return how many seconds all of a speech takes, with the part before a pause and the part that was cut off.
  * @param {Speech} speech
  * @returns {number}
  */
@@ -146,7 +146,7 @@ export function measureLine(speech) {
 }
 
 /**
- * Return the speech, ending no later than `at`; how long it would have been is remembered.
+ * Return the speech, ending no later than `at`; it remembers its full length.
  * @param {Speech} speech
  * @param {number} at
  * @returns {Speech}
@@ -156,8 +156,8 @@ export function cut(speech, at) {
 }
 
 /**
- * Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, with what
- * is said behind it under its id; a lesser one is not said.
+ * Return speeches, given in order, without overlaps: one of equal or higher importance cuts the running one, with its later
+ * pieces; a less important one is dropped.
  * @param {Speech[]} speeches
  * @returns {Speech[]}
  */
@@ -188,7 +188,7 @@ export function apart(speeches) {
 }
 
 /**
- * Return a text that comes while another one of its id is said: it is said after that. said: in order.
+ * Return a text moved to after another one of its id that is being said. said: in order.
  * @param {Speech[]} said
  * @param {Speech} new_
  * @param {number} now
@@ -209,8 +209,8 @@ export function behind(said, new_, now) {
 }
 
 /**
- * Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it keeps its start and
- * what has been said of it. Only lines whose words or shapes were told with their times do.
+ * Return a line as the continuation of the last one with the same id, if that has begun by `now` or begins with it: it keeps
+ * the start and what has been said. Only lines whose words or shapes have times continue.
  * @param {?Speech} old
  * @param {Speech} new_
  * @param {number} now
@@ -238,7 +238,7 @@ export function goingOn(old, new_, now) {
 }
 
 /**
- * Return a text with the times its letters tell, so that what comes of it later can be added.
+ * Return a text with times estimated from its letters, so that later pieces can be added.
  * @param {Alphabet} alphabet
  * @param {Speech} new_
  * @returns {Speech}
@@ -250,7 +250,7 @@ export function paceSpeech(alphabet, new_) {
 }
 
 /**
- * Return a line with a text behind what was told of it. told, more: their words.
+ * Return a line with a text after its known words. told, more: the words of both.
  * @param {Speech} old
  * @param {LineTiming} told
  * @param {Speech} new_
@@ -267,7 +267,7 @@ function _behindWords(old, told, new_, more, now) {
 }
 
 /**
- * Whether two tracks' looks are the same; so for the others below.
+ * Return whether the looks of two tracks are the same. The functions below compare other items.
  * @param {LookAt[]} one
  * @param {LookAt[]} other
  * @returns {boolean}

@@ -1,5 +1,5 @@
 /**
- * A lane of events in time, drawn one after another: never changed, extended at the end, forgotten at the front.
+ * A lane of events in time, drawn one after another. It never changes: it is extended at the end and forgotten at the front.
  *
  * Translated from metagraph/playback/life/lane.py; change that, and translate anew.
  */
@@ -7,8 +7,8 @@
 import { bisectLeft, bisectRight } from "./basics.js";
 
 /**
- * times: when events begin, ascending, seconds. rows: what each event is. first: number of the first event that is still
- * kept. width: how many numbers a row has.
+ * times: when events begin, ascending, seconds. rows: the values of each event. first: number of the first event that is
+ * still kept. width: how many numbers a row has.
  *
  * times: number[]; rows: number[][]; first: number; width: number.
  */
@@ -25,7 +25,7 @@ export class Lane {
     return this.first + this.times.length;
   }
 
-  /** Return the lane with only what begins before a time. */
+  /** Return the lane with only the events that begin before a time. */
   until(seconds) {
     const count = bisectLeft(this.times, seconds);
     if (count === this.times.length) {
@@ -42,7 +42,7 @@ export class Lane {
     return new Lane([...this.times, ...times], [...this.rows, ...rows], this.first, this.width);
   }
 
-  /** Return the lane without what neither goes on at `seconds` nor comes later; `before`: how many more are kept. */
+  /** Return the lane without events that are over at `seconds`; `before`: how many of those to keep. */
   since(seconds, before = 1) {
     const gone = Math.max(0, bisectRight(this.times, seconds) - 1 - before);
     if (gone === 0) {

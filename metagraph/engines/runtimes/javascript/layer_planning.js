@@ -1,6 +1,6 @@
 /**
- * Planning one layer on: what was planned for later is taken back to its meta actions, merged with new requests, placed and
- * performed again (Borer et al., section 6).
+ * Extend the plan of one layer: the later part of the plan is turned back into its meta actions, merged with new requests,
+ * placed and performed again (Borer et al., section 6).
  *
  * Translated from metagraph/playback/planning/layer_planning.py; change that, and translate anew.
  */
@@ -18,8 +18,8 @@ export const WINDOW = 1; // seconds a request may use when it does not say how l
 /**
  * A layer placed in time, not yet performed.
  *
- * able: whether the layer can perform at all. done: meta actions that were performed before. placed: those to be performed,
- * in order; what a model wrote among them is performed as its mode says. reports: what was told so far.
+ * able: whether the layer can perform at all. done: meta actions that were performed before. placed: those to perform, in
+ * order; those that a model wrote are performed as the mode says. reports: the reports so far.
  *
  * layer: string; performer: Performer; able: boolean; done: MetaAction[]; placed: MetaAction[]; reports: Report[]; past:
  * Past; cursor: Cursor; written: MetaAction[].
@@ -37,7 +37,7 @@ export class LayerDraft {
     this.written = written;
   }
 
-  /** Return the layer's plan, with those of its meta actions performed that are given; `reports` then tells all. */
+  /** Return the layer's plan with the given meta actions performed; `reports` is then complete. */
   performed(metas, end) {
     let cues = [];
     let rests = [];
@@ -54,11 +54,12 @@ export class LayerDraft {
 }
 
 /**
- * Return a layer's plan taken back to `now`, with what is asked for placed anew.
+ * Return a layer's plan cut at `now`, with the requests placed again.
  *
- * chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so far.
- * fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn; stopped: those withdrawn,
- * whose running action is left. stance: which the layer would begin in. moods: what it is in the mood for, and when.
+ * chain: the model that writes when there are no requests, or None. kinds: the kinds of actions that the layer has. told:
+ * reports of the plan so far. fresh: new requests, of all layers. replaced: ids of requests that are replaced or withdrawn;
+ * stopped: those withdrawn, whose running action is left. stance: the stance in which the layer would begin. moods: the mood
+ * over time.
  * @param {Project} project
  * @param {MetaGraph} graph
  * @param {?Markov} chain
@@ -102,7 +103,7 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   }
   const future = [];
   const planned = new Map(); // again: when those of a request start
-  const judged = new Set([]); // those whose lateness is told by what is performed
+  const judged = new Set([]); // those whose lateness is known once they are performed
   for (const meta of old.metas) {
     if (again.has(meta.request.id) || served.has(meta.request.id)) {
       continue;
@@ -115,7 +116,7 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
       planned.set(meta.request.id, [...planned.get(meta.request.id) ?? [], meta.start]);
     }
   }
-  // What was told about time still holds; the rest will be told again by those that are planned again.
+  // Reports about time still hold; those that are planned again report the rest.
   const done = old.metas.filter((meta) =>
     !again.has(meta.request.id)
       && !(planned.get(meta.request.id) ?? []).includes(meta.start)
@@ -161,7 +162,7 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
 }
 
 /**
- * Return a request that may begin as much earlier as its preparation takes longer in its mood.
+ * Return a request that may begin earlier, by the extra time that its preparation takes in its mood.
  * @param {MetaRequest} request
  * @param {Moods} moods
  * @returns {MetaRequest}
@@ -179,7 +180,7 @@ export function inTime(request, moods) {
 }
 
 /**
- * Return a request with the window it may use; where its stroke is judged, the moment it is wanted at.
+ * Return a request as a meta action with the window it may use; if its stroke is judged, with the moment of the stroke.
  * @param {MetaRequest} request
  * @returns {MetaAction}
  */
@@ -195,8 +196,8 @@ export function metaOf(request) {
 }
 
 /**
- * Return the stance a layer begins in: as it did before, as asked, the graph's start, or the first that has a loop; "" for
- * none.
+ * Return the stance in which a layer begins: that of the plan before, the given one, the graph's start, or the first that
+ * has a loop; "" for none.
  * @param {MetaGraph} graph
  * @param {LayerPlan} old
  * @param {?string} stance

@@ -1,6 +1,6 @@
 /**
- * When a line's words and mouth shapes come, as a synthesiser tells them: the mouth follows them and is shut between. Times
- * are seconds from the line's start.
+ * The times of a line's words and mouth shapes, as a synthesiser reports them: the mouth follows them and is shut in
+ * between. Times are seconds from the line's start.
  *
  * Translated from metagraph/playback/life/line_timing.py; change that, and translate anew.
  */
@@ -9,12 +9,12 @@ import { PACE, Spelled, measureLetter, sounds, splitWords } from "./graphemes.js
 import { LATE, MouthPiece, STEP, VOWELS } from "./mouth.js";
 import { but, maxOf, sum, thousandths, zip } from "./basics.js";
 
-export const WORD = 0.15; // seconds a word takes of which only the start is told, if nothing comes before
-export const LETTER = 0.07; // and for each of its letters
-export const SHAPE = 0.2; // seconds the last shape of a line stays
+export const WORD = 0.15; // seconds that a word takes if only its start is known and nothing comes sooner
+export const LETTER = 0.07; // and seconds for each of its letters
+export const SHAPE = 0.2; // seconds for which the last shape of a line stays
 export const FARTHEST = 3600; // seconds of a line
-export const AGAIN = 0.1; // seconds before the last shape of a line, from which on a shape that is told later belongs to it
-export const SLACK = 0.05; // seconds by which times may be past the end they are told with
+export const AGAIN = 0.1; // a later piece belongs to a line from this many seconds before its last shape on
+export const SLACK = 0.05; // seconds by which times may exceed the given end
 // What each viseme of a set shows of the mouth shapes, and how fully.
 export const OCULUS = new Map([
   ["sil", "sil"],
@@ -102,7 +102,7 @@ export const SETS = ["oculus", "azure", "sapi", "polly", "arkit"];
 export const WEAK = new Map([["@", 0.6], ["12", 0.5], ["1", 0.8], ["mouthSmileLeft", 0.3], ["mouthSmileRight", 0.3]]);
 
 /**
- * A word from `start` to `end`; None where only its start is told.
+ * A word from `start` to `end`; `end` is None if only its start is known.
  *
  * text: string; start: number; end: ?number.
  */
@@ -115,8 +115,8 @@ export class SpokenWord {
 }
 
 /**
- * A mouth shape from `at` until the next mark of a later time. viseme: its name in the set it is of, of `VISEMES` in a
- * `LineTiming`. weight: how fully it is made, 0..1.
+ * A mouth shape from `at` until the next mark of a later time. viseme: its name in its set; in a `LineTiming`, one of
+ * `VISEMES`. weight: how fully it is made, 0..1.
  *
  * at: number; viseme: string; weight: number.
  */
@@ -129,8 +129,8 @@ export class VisemeMark {
 }
 
 /**
- * A line's words and mouth shapes, each by time. later: seconds by which what is told later is said later, because something
- * came after its time. paced: whether nobody told the times, and they follow from the letters.
+ * A line's words and mouth shapes, each by time. later: seconds by which later pieces are delayed, because one came after
+ * its time. paced: whether the times are estimated from the letters.
  *
  * words: SpokenWord[]; marks: VisemeMark[]; later: number; paced: boolean.
  */
@@ -144,7 +144,7 @@ export class LineTiming {
 }
 
 /**
- * Whether two lines' words and shapes come alike.
+ * Return whether two lines have the same words and shapes at the same times.
  * @param {?LineTiming} one
  * @param {?LineTiming} other
  * @returns {boolean}
@@ -176,7 +176,7 @@ function _table(name) {
 }
 
 /**
- * Return the first set that has all of some visemes, "" where none has.
+ * Return the first set that has all of the visemes, "" if none has.
  * @param {VisemeMark[]} marks
  * @returns {string}
  */
@@ -190,10 +190,9 @@ export function setOf(marks) {
 }
 
 /**
- * Return what is wrong with a line's times, where, and what would be right; "" where nothing is.
+ * Return what is wrong with a line's times, where, and what would be right; "" if nothing is wrong.
  *
- * name: of the set the visemes are of, "" for what their names tell. duration: seconds of its sound, None where that is not
- * told.
+ * name: of the visemes' set, "" to find it by their names. duration: seconds of its sound, None if unknown.
  * @param {SpokenWord[]} words
  * @param {VisemeMark[]} marks
  * @param {string} name
@@ -266,7 +265,7 @@ function _outOfRange(seconds) {
 }
 
 /**
- * Return the timing that words and visemes in which nothing is wrong make. name: as for `wrong_in`.
+ * Return the timing of words and visemes that are valid. name: as for `wrong_in`.
  * @param {Alphabet} alphabet
  * @param {SpokenWord[]} words
  * @param {VisemeMark[]} marks
@@ -291,7 +290,7 @@ export function timingOf(alphabet, words, marks, name) {
 }
 
 /**
- * Return how long a text takes where more of it may come before or after, seconds.
+ * Return how many seconds a text takes as a part of a longer text.
  * @param {Alphabet} alphabet
  * @param {string} text
  * @returns {number}
@@ -305,7 +304,7 @@ export function measureText(alphabet, text) {
 }
 
 /**
- * Return the words of a text, one after the other. seconds: how long all of it takes, None for as long as its letters tell.
+ * Return the words of a text, one after the other. seconds: how long all of it takes, None to estimate it from the letters.
  * @param {Alphabet} alphabet
  * @param {string} text
  * @param {?number} seconds
@@ -336,8 +335,7 @@ function _measureWord(alphabet, word) {
 }
 
 /**
- * Return the words that letters make whose times are told one by one: a blank parts words, and so does each letter that is a
- * syllable.
+ * Return the words of letters that have a time each. Blanks separate words, and so does each letter that is a syllable.
  * @param {Alphabet} alphabet
  * @param {SpokenWord[]} letters
  * @returns {SpokenWord[]}
@@ -372,7 +370,7 @@ export function toldText(timing) {
 }
 
 /**
- * Return how long a line lasts, to whole rows of a mouth's track, so that what is added to it later moves nothing. duration:
+ * Return how long a line lasts, rounded to whole rows of the mouth's track, so that later additions move nothing. duration:
  * of its sound, None for as long as its words and shapes need.
  * @param {LineTiming} timing
  * @param {?number} duration
@@ -384,8 +382,8 @@ export function timedSeconds(timing, duration) {
 }
 
 /**
- * Return the mouth's pieces and the syllables of a line's words and shapes: shapes are the mouth's where any are told, words
- * those of gestures and blinks.
+ * Return the mouth's pieces and the syllables of a line's words and shapes: the mouth follows the shapes if there are any;
+ * gestures and blinks follow the words.
  * @param {Alphabet} alphabet
  * @param {LineTiming} timing
  * @returns {Spelled}
@@ -421,7 +419,7 @@ export function timedSounds(alphabet, timing) {
 }
 
 /**
- * Return when each mark is over: several at one time are the mouth's together.
+ * Return when each mark ends: marks at the same time show together.
  * @param {VisemeMark[]} marks
  * @returns {number[]}
  */
@@ -440,8 +438,8 @@ function _ends(marks) {
 }
 
 /**
- * Return whether what is told of a line after its end is of the same line: it begins after the last word or shape that was
- * told, or tells all again with more behind it. Else somebody says something else under the same id.
+ * Return whether a piece that comes after the end of a line belongs to the same line: it begins after the last known word or
+ * shape, or repeats all with more behind it. Otherwise it is something else under the same id.
  * @param {LineTiming} old
  * @param {LineTiming} new_
  * @returns {boolean}
@@ -481,9 +479,9 @@ export function shifted(timing, by) {
 }
 
 /**
- * Return what is told of a line later, when it is said: a piece that counts its times from its own beginning comes after
- * what was told, and what comes after its time is said at once, and so is what follows it. said: seconds of the line that
- * are over.
+ * Return a later piece of a line with the times at which it is said. A piece that counts from its own beginning follows the
+ * earlier pieces. A piece that comes too late is said at once, and everything after it is delayed. said: seconds of the line
+ * that are over.
  * @param {LineTiming} old
  * @param {LineTiming} new_
  * @param {number} said
@@ -511,8 +509,8 @@ export function placeTold(old, new_, said) {
 }
 
 /**
- * Return whether what is told of a line is a piece of its own, which begins at 0: it lies where the line begins, and does
- * not tell that again.
+ * Return whether a piece of a line counts its times from 0 again: it lies at the beginning of the line, but does not repeat
+ * it.
  * @param {LineTiming} old
  * @param {LineTiming} new_
  * @param {number} said
@@ -554,7 +552,7 @@ function _end(word) {
 }
 
 /**
- * Return when the last word or shape is over.
+ * Return when the last word or shape ends.
  * @param {LineTiming} timing
  * @returns {number}
  */
@@ -568,8 +566,8 @@ function _endOf(timing) {
 }
 
 /**
- * Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the new
- * begins; of a word or a shape that has begun meanwhile the rest is said.
+ * Return a line's timing with a later piece: the old timing stays up to `said` seconds, and up to the beginning of the new
+ * piece. Of a word or shape that has begun meanwhile, the rest is said.
  * @param {LineTiming} old
  * @param {LineTiming} new_
  * @param {number} said

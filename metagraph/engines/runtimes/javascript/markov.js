@@ -1,10 +1,10 @@
 /**
- * The Markov model that performs when nobody asks for anything: a first-order chain over (limb, kind).
+ * The Markov model that performs when there are no requests: a first-order chain over (limb, kind).
  *
  * The arms matrix is the paper's (Borer et al., figure 11), learned from annotated casual conversation. Body and head have
  * no published matrix; theirs are ours, shaped on the paper's labels: the head nods and now and then changes its tilt, the
- * body mostly rests, shifts and fidgets. So are the shares of what is performed while one is said to idle, listen or talk:
- * hands gesture with one's own speech, the head nods at the other's.
+ * body mostly rests, shifts and fidgets. The shares of what is performed in the modes idle, listening and talking are ours,
+ * too: the hands gesture with the character's own speech, and the head nods at the other's.
  *
  * Translated from metagraph/playback/planning/markov.py; change that, and translate anew.
  */
@@ -24,10 +24,11 @@ export const RESTS = 0.9; // standard deviation of rests, times their mean
  * out.
  *
  * Rests are log-normal about the mean gap (`rest_length`): most are short, some long, as people's are. Windows are as
- * `length` says. kinds: what the graph has; states of other kinds are passed over, so that half-filled graphs perform too.
+ * `length` says. kinds: those that the graph has; states of other kinds are passed over, so that half-filled graphs perform,
+ * too.
  *
- * Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives bit
- * for bit what writing in one go does. A chain that cannot leave a row of zeros starts again from any state.
+ * Each draw is keyed by the meta action's number. So a longer horizon only appends, and continuing from a cursor gives bit
+ * for bit the same as writing in one go. After a row of zeros, the chain starts again from any state.
  * @param {Markov} chain
  * @param {number} seed
  * @param {number} until
@@ -74,8 +75,8 @@ export function write(chain, seed, until, kinds = null, cursor = BEGIN) {
 }
 
 /**
- * Return how likely each state is that may come after a state (-1: before the first), by its place; any that may be where
- * nothing leads on.
+ * Return the probability of each state that may follow a state (-1: before the first), by its index; of all allowed states
+ * if none may follow.
  * @param {Markov} chain
  * @param {number} state
  * @param {number[]} openTo
@@ -93,8 +94,8 @@ function _row(chain, state, openTo) {
 }
 
 /**
- * Whether something the model wrote is performed while somebody idles, listens or talks (`Markov.modes`). What is left out
- * leaves the rest as it was, so that it does not matter when a mode became known.
+ * Return whether something that the model wrote is performed in a mode (`Markov.modes`). What is left out does not change
+ * the rest, so it does not matter when a mode became known.
  * @param {Markov} chain
  * @param {number} seed
  * @param {MetaAction} meta
@@ -112,8 +113,8 @@ export function performs(chain, seed, meta, mode) {
 }
 
 /**
- * Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths; else log-normal with
- * the state's mean and standard deviation.
+ * Return how many seconds a meta action of a key lasts: uniform from 1 to 3 if the model has no lengths; else log-normal
+ * with the state's mean and standard deviation.
  * @param {Markov} chain
  * @param {number} state
  * @param {number} key

@@ -1,5 +1,5 @@
 /**
- * What asks mean: requests of the layers, and what lasts (Borer et al., section 6 and figure 5).
+ * The meaning of asks: requests of the layers, and lasting items (Borer et al., section 6 and figure 5).
  *
  * Translated from metagraph/playback/planning/meaning.py; change that, and translate anew.
  */
@@ -18,8 +18,8 @@ import { findLongestLead, lead } from "./phases.js";
 export const FOREVER = 1000000000; // seconds; a look that lasts until the next
 
 /**
- * An ask with every field that any has; `do` says which count. line: id; said: that line, None where there is none such.
- * text: what is said, or a block of BML. timing: when its words and shapes come.
+ * An ask with the fields of all kinds of asks; `do` says which of them count. line: id; said: that line, None if there is
+ * none. text: the words, or a block of BML. timing: the times of its words and shapes.
  *
  * do: string; id: string; at: ?number; priority: number; layer: ?string; tags: string[]; limb: ?string; duration: ?number;
  * stroke: ?number; hold: ?number; late: ?number; valence: ?number; arousal: ?number; intensity: ?number; prepare: boolean;
@@ -98,8 +98,8 @@ export class PlainAsk {
 }
 
 /**
- * A line of dialogue. seconds: how long it is, None where nobody knows. asks: what it asks for while it is said, in seconds
- * from its start. valence, arousal, intensity: of the mood it is said in.
+ * A line of dialogue. seconds: its length, None if unknown. asks: its own requests, in seconds from its start. valence,
+ * arousal, intensity: of the mood it is said in.
  *
  * text: string; seconds: ?number; asks: PlainAsk[]; valence: ?number; arousal: ?number; intensity: ?number.
  */
@@ -115,7 +115,7 @@ export class SaidLine {
 }
 
 /**
- * A block of BML that is asked for: what it says becomes asks `<id>.1`, `<id>.2`, ...
+ * A requested block of BML: its behaviours become asks `<id>.1`, `<id>.2`, ...
  *
  * id: string; at: number; priority: number; text: string.
  */
@@ -129,8 +129,7 @@ export class AskedBlock {
 }
 
 /**
- * What an ask does to what is said. do: "interrupt", "pause", "resume" or "finish". what: the id of what is said, "" for all
- * of it.
+ * An ask that steers speech. do: "interrupt", "pause", "resume" or "finish". what: the id of the speech, "" for all speech.
  *
  * do: string; id: string; what: string; priority: number.
  */
@@ -144,10 +143,10 @@ export class SteeringAsk {
 }
 
 /**
- * What asks mean, so far. graphs: of the layers, in their order. withdrawn: ids taken back; every one where it holds "".
- * steered: what is done to what is said, in turn. unknown: what an ask names that is not there: "action", "stance" or
- * "line". Speeches may overlap. fixed: seconds before which no gesture can begin that a line asks for, though the line
- * itself may.
+ * The meaning of asks, so far. graphs: of the layers, in their order. withdrawn: ids taken back; "" stands for all. steered:
+ * the asks that steer speech, in order. unknown: the kind of thing that an ask names and that does not exist: "action",
+ * "stance" or "line". Speeches may overlap. fixed: the earliest second at which a gesture of a line can begin; the line
+ * itself may begin earlier.
  *
  * project: Project; graphs: MetaGraph[]; alphabet: Alphabet; requests: MetaRequest[]; looks: LookAt[]; speeches: Speech[];
  * modes: ModeFrom[]; places: PlaceFrom[]; blinks: BlinkAt[]; stays: StayFrom[]; moods: MoodFrom[]; blocks: AskedBlock[];
@@ -192,7 +191,7 @@ export class Meaning {
     this.fixed = fixed;
   }
 
-  /** Return what lasts. */
+  /** Return the track of lasting items. */
   track() {
     return new Track(
       [...this.looks],
@@ -205,7 +204,7 @@ export class Meaning {
     );
   }
 
-  /** Take what others mean, too. */
+  /** Add the meaning of other asks. */
   take(other) {
     this.requests.push(...other.requests);
     this.looks.push(...other.looks);
@@ -222,7 +221,7 @@ export class Meaning {
     }
   }
 
-  /** Tell that an ask was not understood. */
+  /** Report that an ask was not understood. */
   refuse(ident, why, layer, at) {
     this.refused.push(new Report(ident, "not-understood", why, layer === null ? "arms" : layer, at));
   }
@@ -233,8 +232,8 @@ export class Meaning {
   }
 
   /**
-   * Add what an ask means; return why it can mean nothing, "" where it does. ident, at, priority: its own, or what the line
-   * has made of them that asks for it. shift: seconds that line begins at, else 0.
+   * Add the meaning of an ask; return why it has none, "" if it has one. ident, at, priority: its own, or as the line
+   * changed them that it belongs to. shift: the second at which that line begins, else 0.
    */
   add(ask, ident, at, priority, shift) {
     const where = ask.layer === null ? "" : ` in the ${ask.layer} layer`;
@@ -377,7 +376,7 @@ export class Meaning {
     return "";
   }
 
-  /** Nods are gestures tagged so; where none is, the likeliest of those called so, whatever stance it needs. */
+  /** Nods are gestures with that tag; if there is none, the likeliest one with that name, whatever stance it needs. */
   head(ask, ident, at, priority) {
     const gestures = [...this.graphOf("head").actions.values()].filter((x) =>
       x.kind === "gesture" && ask.tags.every((tag) => x.tags.includes(tag)));
@@ -416,7 +415,7 @@ export class Meaning {
     return "";
   }
 
-  /** Something said: a line, with what it asks for meanwhile, or other words. */
+  /** Say a line, with its own requests, or other words. */
   say(ask, ident, at, priority) {
     const line = ask.said;
     if (ask.line !== null && line === null) {
@@ -476,7 +475,7 @@ export class Meaning {
 }
 
 /**
- * Take what an ask means, or refuse all of it. now: when it begins where it does not say; soon: when it is said, likewise.
+ * Add the meaning of an ask, or refuse all of it. now: when it begins if it does not say; soon: the same for speech.
  * @param {Meaning} whole
  * @param {PlainAsk} ask
  * @param {number} now

@@ -1,5 +1,5 @@
 /**
- * Requests, meta actions and plans: what the planner takes and gives. All values; times are seconds.
+ * Requests, meta actions and plans: what the planner takes and returns. All are values; times are seconds.
  *
  * Translated from metagraph/playback/plan.py; change that, and translate anew.
  */
@@ -9,16 +9,16 @@ export const ASKED = 1; // default priority of a request
 export const WRITTEN = 0; // priority of what the Markov model writes
 
 /**
- * What an agent or animator asks for, at any level of abstraction.
+ * A request of an agent or animator, at any level of abstraction.
  *
- * id: unique; it keys the random draws. start: seconds. duration: how long the activity is wanted, None for one action.
+ * id: unique; it keys the random draws. start: seconds. duration: how long the activity should last, None for one action.
  * action: id of a specific action. tags: all of them must be on the action. limb: which arm. stance: id of the stance to go
- * to (kind "transition"). priority: higher wins. resume: whether, when something more important cuts it, its remainder goes
- * on afterwards. stroke: when a gesture's stroke should come; `start` is then the earliest it may begin. hold: seconds its
- * hold should last, None for as long as it was made. prepare: whether its preparation plays. among: ids of the only actions
- * it may be, any where empty. late: by how many seconds its stroke, or where none is asked for its start, may come late, 0
- * for on time or not at all; None for as late as the settings allow. valence, arousal, intensity: of the mood it is played
- * in, as in `mood.Mood`; None for as it is then.
+ * to (kind "transition"). priority: higher wins. resume: whether the remainder plays afterwards if a more important request
+ * cuts it. stroke: when a gesture's stroke should come; `start` is then the earliest it may begin. hold: seconds that its
+ * hold should last, None for its length in the clip. prepare: whether its preparation plays. among: ids of the only actions
+ * it may be; empty for any. late: by how many seconds its stroke may come late, or its start if it has no stroke; 0 for on
+ * time or not at all, None for as late as the settings allow. valence, arousal, intensity: the mood it is played in, as in
+ * `mood.Mood`; None for the mood at that time.
  *
  * id: string; layer: string; kind: string; start: number; duration: ?number; action: ?string; tags: string[]; limb: ?string;
  * stance: ?string; priority: number; resume: boolean; stroke: ?number; hold: ?number; prepare: boolean; among: string[];
@@ -69,7 +69,8 @@ export class MetaRequest {
 }
 
 /**
- * Where writing stands: before meta action `number`, in state number `state` (-1: none yet), which ended at `time` seconds.
+ * Where writing continues: before meta action `number`, after state number `state` (-1: none yet), which ended at `time`
+ * seconds.
  *
  * number: number; state: number; time: number.
  */
@@ -82,8 +83,8 @@ export class Cursor {
 }
 
 /**
- * A request placed in time: `start`..`end` is the window it may use. written: by the Markov model, not asked for. part: 0
- * for the request itself, n for its n-th remainder after a cut.
+ * A request placed in time: `start`..`end` is the window it may use. written: whether the Markov model wrote it, instead of
+ * a request. part: 0 for the request itself, n for its n-th remainder after a cut.
  *
  * request: MetaRequest; start: number; end: number; part: number; written: boolean.
  */
@@ -96,12 +97,12 @@ export class MetaAction {
     this.written = written;
   }
 
-  /** How important it is: its request's priority; what a model wrote gives way to all that is asked for. */
+  /** Its importance: its request's priority. What a model wrote gives way to all requests. */
   get rank() {
     return this.written ? -Infinity : this.request.priority;
   }
 
-  /** What keys this meta action's random draws. */
+  /** The key of this meta action's random draws. */
   get key() {
     return this.part === 0 ? this.request.id : `${this.request.id}+${this.part}`;
   }
@@ -111,10 +112,10 @@ export class MetaAction {
  * One action in the plan. It plays its clip from `entry` on during `start`..`end`, at `tempo` times its own speed but for
  * its hold.
  *
- * hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched. blend_in,
+ * hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 if it is not stretched. blend_in,
  * blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the
  * meta action it realises. extent: how large it is played, a factor of its turns away from the stance. cycle_from, cycle_to:
- * clip seconds between which it repeats; 0, 0 where it plays once.
+ * clip seconds between which it repeats; 0, 0 if it plays once.
  *
  * action: Action; start: number; end: number; entry: number; blendIn: number; blendOut: number; stance: string; then:
  * string; meta: string; holdFrom: number; holdTo: number; hold: number; extent: number; tempo: number; cycleFrom: number;
@@ -157,7 +158,7 @@ export class Cue {
     this.cycleTo = cycleTo;
   }
 
-  /** Whether it plays a cycle again and again. */
+  /** Whether it repeats a cycle. */
   get repeats() {
     return this.cycleTo > this.cycleFrom;
   }
@@ -182,8 +183,8 @@ export class Rest {
 export const TEMPORAL = new Set(["late", "cut", "resumed", "past"]); // told by temporal replanning, once
 
 /**
- * What became of a meta action that was not simply played as asked. played: whether something of it still plays. late: by
- * how many seconds it comes late, or would have come, where it said how late it may. by: key of the meta action whose action
+ * The result of a meta action that does not play exactly as requested. played: whether a part of it still plays. late: by
+ * how many seconds it comes late, or would have come, if it said how late it may. by: key of the meta action whose action
  * serves it, too.
  *
  * request: string; outcome: string; message: string; layer: string; at: number; played: boolean; written: boolean; late:
@@ -204,8 +205,9 @@ export class Report {
 }
 
 /**
- * What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses: how often each
- * action was used. recent: the actions used last, by `remembering.node`, the latest at the end. ended: when each ended last.
+ * What further planning needs from forgotten cues. free: when the last one ended; stance: in which stance. uses: how often
+ * each action was used. recent: the actions used last, by `remembering.node`, the latest at the end. ended: when each ended
+ * last.
  *
  * free: number; stance: string; uses: Map<string, number>; recent: Map<string, string[]>; ended: Map<string, number>.
  */
@@ -222,8 +224,8 @@ export class Past {
 /**
  * cues never overlap and ascend; rests ascend by fade_start, the first covering everything before.
  *
- * past: what came before the first cue, where that was forgotten. cursor: where the Markov model writes on. written: what it
- * wrote for later, as it wrote it: each extension fits it in anew, so that it does not matter when it was first seen.
+ * past: what came before the first cue, if that was forgotten. cursor: where the Markov model continues to write. written:
+ * what it wrote for later, unchanged: each extension fits it in again, so that it does not matter when it was written.
  *
  * layer: string; metas: MetaAction[]; cues: Cue[]; rests: Rest[]; past: Past; cursor: Cursor; written: MetaAction[].
  */

@@ -2,17 +2,17 @@
  * How a mood shows: which actions become likelier, how large and fast they are played, and what it makes of breath, blinks,
  * gaze, posture and face.
  *
- * A mood is a point in Russell's circumplex (1980): valence, how pleasant, and arousal, how excited, both -1..1; beside it
- * an intensity, 0..2, 1 as made. Neutral (0, 0, 1) changes nothing, to the last digit: every factor is 1 and every offset 0
- * there.
+ * A mood is a point in Russell's circumplex (1980): valence, how pleasant, and arousal, how excited, both -1..1; with it, an
+ * intensity, 0..2; 1 is normal. Neutral (0, 0, 1) changes nothing, to the last digit: every factor is 1 and every offset is
+ * 0.
  *
  * What is known and followed here: arousal goes with the speed, acceleration and jerk of movements (Pollick et al. 2001, of
  * arms that knock and drink); elated joy and hot anger are expansive and full of movement, sadness and boredom neither
  * (Wallbott 1998); the sad walk slowly, with small movements and bowed heads (Roether et al. 2009). Anger and fear lie close
- * together here, at 99 and 116 degrees; people tell them apart by power (Fontaine et al. 2007). So of unpleasant excitement
- * the milder is anger here, the stronger fear: it draws back (Coulson 2004), the shoulders up and the arms close. Faces
- * follow the prototypes of FACS (Ekman and Friesen 1978): fear 1+2+4+5+20, anger 4+5+7+23, joy 6+12, sadness 1+4+15. By how
- * much - the numbers below - is ours, chosen so that every clip still looks as if it was made so.
+ * together here, at 99 and 116 degrees; people tell them apart by power (Fontaine et al. 2007). So here, mild unpleasant
+ * excitement is anger and strong unpleasant excitement is fear: the body draws back (Coulson 2004), with the shoulders up
+ * and the arms close. Faces follow the prototypes of FACS (Ekman and Friesen 1978): fear 1+2+4+5+20, anger 4+5+7+23, joy
+ * 6+12, sadness 1+4+15. The amounts (the numbers below) are ours, chosen so that every clip still looks natural.
  *
  * Translated from metagraph/playback/planning/mood.py; change that, and translate anew.
  */
@@ -52,7 +52,7 @@ export const MOODS = new Map([
 ]);
 
 /**
- * valence, arousal: -1..1. intensity: 0..2, 1 as made.
+ * valence, arousal: -1..1. intensity: 0..2, 1 is normal.
  *
  * valence: number; arousal: number; intensity: number.
  */
@@ -75,8 +75,8 @@ export class Mood {
 }
 
 /**
- * A mood told from `start` on, until `end`; what it leaves out stays as it would be without it. Of two that last the later
- * began counts, and the other again when that is over.
+ * A mood that holds from `start` until `end`; a field that it leaves out stays as it is without it. If two hold at once, the
+ * one that began later counts. When it is over, the other counts again.
  *
  * id: string; start: number; valence: ?number; arousal: ?number; intensity: ?number; end: number.
  */
@@ -92,7 +92,7 @@ export class MoodFrom {
 }
 
 /**
- * The mood over time. base: where nothing is told; told: by start.
+ * The mood over time. base: the mood where no other holds; told: the others, by start.
  *
  * base: Mood; told: MoodFrom[].
  */
@@ -104,7 +104,7 @@ export class Moods {
 }
 
 /**
- * What a mood makes of the life layers' amounts and rates: factors, as those of a manner.
+ * The factors by which a mood changes the amounts and rates of the life layers, as those of a manner.
  *
  * breathing: number; breathRate: number; aversionRate: number; saccadeRate: number; blinks: number.
  */
@@ -121,7 +121,7 @@ export class LifeMood {
 /**
  * Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they hang,
  * 0..1, or are open wide, below 0. smile, frown, brow_down, brow_up, brows: weights of the face, 0..1. thrust: how far the
- * body leans into it, 0..1, or draws back, below 0. tension: of shoulders, arms and hands, 0..1. closed: how close the arms
+ * body leans forward, 0..1, or draws back, below 0. tension: of shoulders, arms and hands, 0..1. closed: how close the arms
  * are kept, 0..1.
  *
  * droop: number; lift: number; lids: number; smile: number; frown: number; browDown: number; browUp: number; thrust: number;
@@ -156,7 +156,7 @@ export class Bearing {
 }
 
 /**
- * Return a mood with what is told of it changed, each within its range.
+ * Return a mood with the given fields changed, each limited to its range.
  * @param {Mood} mood
  * @param {?number} valence
  * @param {?number} arousal
@@ -172,7 +172,7 @@ export function changed(mood, valence, arousal, intensity) {
 }
 
 /**
- * Return the mood wanted at a time; posture and face take a while to follow (`shown`).
+ * Return the mood that holds at a time; posture and face follow it slowly (`shown`).
  * @param {Moods} moods
  * @param {number} seconds
  * @returns {Mood}
@@ -191,8 +191,8 @@ export function moodAt(moods, seconds) {
 }
 
 /**
- * Return those that may still show at `seconds` or later: not what is over and has faded, nor what another that lasts for
- * ever has replaced.
+ * Return the moods that may still show at `seconds` or later: without those that are over and have faded, and without those
+ * that a mood without an end has replaced.
  * @param {MoodFrom[]} told
  * @param {number} seconds
  * @returns {MoodFrom[]}
@@ -254,8 +254,8 @@ export function faded(x) {
 }
 
 /**
- * Return the mood that shows at a time, on its way from those before. starts: when each begins, ascending; values: valence,
- * arousal, intensity of each. Before the first it is the first.
+ * Return the mood that shows at a time, while it fades from the previous ones. starts: when each begins, ascending; values:
+ * valence, arousal, intensity of each. Before the first it is the first.
  * @param {number[]} starts
  * @param {number[][]} values
  * @param {number} seconds
@@ -310,8 +310,7 @@ export function leaning(x, most) {
 }
 
 /**
- * Return how lively a mood makes somebody, -1..1: as much as it arouses, more where it is pleasant, less where it is
- * unpleasant and does not excite.
+ * Return how lively a mood is, -1..1: its arousal, plus some if it is pleasant, less if it is unpleasant and not exciting.
  * @param {Mood} mood
  * @returns {number}
  */
@@ -367,7 +366,7 @@ export function tempo(mood) {
 }
 
 /**
- * Return how much longer clip seconds take at a speed than at their own, 0 at that, to the last digit.
+ * Return how much longer clip seconds take at a speed than at their own speed, exactly 0 at that speed.
  * @param {number} seconds
  * @param {number} speed
  * @returns {number}
@@ -377,8 +376,8 @@ export function drag(seconds, speed) {
 }
 
 /**
- * Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of the turn as it was
- * made, a unit quaternion: turns of nearly half a circle, whose short way changes sides, stay as they are.
+ * Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of the original
+ * rotation, a unit quaternion. Rotations of nearly half a circle, whose short way changes sides, stay as they are.
  * @param {number} extent
  * @param {number} real
  * @returns {number}
@@ -388,7 +387,7 @@ export function turnExtent(extent, real) {
 }
 
 /**
- * Whether an action was made for a mood: tagged with one that is near.
+ * Return whether an action was made for a mood: whether it has the tag of a mood that is near.
  * @param {Mood} mood
  * @param {string[]} tags
  * @returns {boolean}
@@ -411,9 +410,9 @@ export function distance(mood, name) {
 }
 
 /**
- * Return how much likelier than usual an action is. vigour: how energetic it is beside others of its layer and kind, -1..1.
- * Up to 4 times for that, 4 for a tag of valence, 9 for a tag that names a mood; and as much rarer where they are against
- * it.
+ * Return the factor of an action's likelihood. vigour: how energetic it is compared with others of its layer and kind,
+ * -1..1. The factor is up to 4 for vigour, 4 for a tag of valence and 9 for a tag that names a mood, and the inverse if they
+ * contradict the mood.
  * @param {Mood} mood
  * @param {string[]} tags
  * @param {number} vigour
@@ -437,7 +436,7 @@ export function favour(mood, tags, vigour) {
 }
 
 /**
- * Whether something a model wrote is performed in a mood: the less lively, the less of it, down to 0.6.
+ * Return whether something that a model wrote is performed in a mood: less of it in a less lively mood, down to 0.6.
  * @param {Mood} mood
  * @param {number} seed
  * @param {string} key
@@ -449,8 +448,8 @@ export function stirs(mood, seed, key) {
 }
 
 /**
- * Return what a mood makes of the life layers. Breath quickens and deepens with arousal, eyes dart and blink more; who feels
- * bad looks away more, who feels well less. The amounts are ours.
+ * Return how a mood changes the life layers. With arousal, breath is quicker and deeper, and eyes dart and blink more. In an
+ * unpleasant mood the character looks away more, in a pleasant one less. The amounts are ours.
  * @param {Mood} mood
  * @returns {LifeMood}
  */
@@ -468,7 +467,7 @@ export function lifeOf(mood) {
 
 /**
  * Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009);
- * shoulders rise, fists close and the body goes ahead with arousal that is not joy; fear draws back (Coulson 2004); the
+ * shoulders rise, fists close and the body leans forward with arousal that is not joy; fear draws back (Coulson 2004); the
  * amounts are ours.
  * @param {Mood} mood
  * @returns {Bearing}

@@ -1,12 +1,12 @@
 /**
- * The mouth over time: from pieces of speech, each with one mouth shape, to smooth weights of all shapes.
+ * The mouth over time: turn pieces of speech, each with one mouth shape, into smooth weights of all shapes.
  *
- * Coarticulation after Cohen and Massaro (1993): every piece rules the mouth around its own time, begins before it is heard
- * and lingers after it; what the mouth shows is the mean of all pieces weighted by how much each rules. A mean never closes
- * a mouth, so lips that meet (p, b, m) and teeth on the lip (f, v) are laid over it (`_closed`): in their middle nothing
- * else shows, however quick the speech is. Lips round for a rounded vowel as soon as the consonants before it begin
- * (look-ahead, Henke 1966), at most a quarter of a second before it (Bell-Berti and Harris 1981 found it begin at about a
- * fixed time before the vowel). The numbers are ours.
+ * Coarticulation after Cohen and Massaro (1993): every piece dominates the mouth around its own time, begins before it is
+ * heard and lingers after it. The mouth shows the mean of all pieces, weighted by their dominance. A mean never closes a
+ * mouth. So lips that meet (p, b, m) and teeth on the lip (f, v) are added on top (`_closed`): in their middle nothing else
+ * shows, however quick the speech is. Lips round for a rounded vowel as soon as the consonants before it begin (look-ahead,
+ * Henke 1966), at most a quarter of a second before it (Bell-Berti and Harris 1981 found it begin at about a fixed time
+ * before the vowel). The numbers are ours.
  *
  * Translated from metagraph/playback/life/mouth.py; change that, and translate anew.
  */
@@ -46,8 +46,8 @@ export class MouthPiece {
 }
 
 /**
- * Return rows `[K][15]` of the shapes' weights, summing to 1; shut at both ends. Their times are evenly spaced from 0 to the
- * duration, at least 1 ms.
+ * Return rows `[K][15]` of the shapes' weights, which sum to 1; the mouth is shut at both ends. Their times are evenly
+ * spaced from 0 to the duration, at least 1 ms.
  * @param {MouthPiece[]} pieces
  * @param {number} duration
  * @returns {number[][]}
@@ -97,7 +97,7 @@ export function mouthTrack(pieces, duration) {
 }
 
 /**
- * Return rows (how far a closure has come, how far it keeps the other one away), 0..1.
+ * Return rows (how far a closure has progressed, how far it suppresses the other one), 0..1.
  * @param {MouthPiece[]} pieces
  * @param {string} viseme
  * @param {number} count
@@ -124,7 +124,7 @@ function _gates(pieces, viseme, count, step) {
 }
 
 /**
- * Return a row with closures laid over it: as much of it is left as they leave open.
+ * Return a row with the closures on top: they suppress the rest as far as they are closed.
  * @param {number[]} row
  * @param {[number, number]} lips
  * @param {[number, number]} teeth
@@ -148,8 +148,8 @@ function _closed(row, lips, teeth) {
 }
 
 /**
- * Write shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they are now, and leave
- * the others what room they leave: smoothing must not part lips that meet.
+ * Write the shapes without silence `[14]`, smoothed over three moments. Shapes that close the mouth keep their present
+ * weights, and the others share what is left: smoothing must not part lips that meet.
  * @param {number[]} out
  * @param {number[]} before
  * @param {number[]} now
@@ -177,8 +177,8 @@ export function rest() {
 }
 
 /**
- * Return the times of stressed syllables: the first peak, then the strongest that have no stronger one within `ACCENT`
- * seconds. People blink and gesture on these, not on every syllable.
+ * Return the times of stressed syllables: the first peak, then those with no stronger one within `ACCENT` seconds. People
+ * blink and gesture on these, not on every syllable.
  * @param {number[]} peaks
  * @param {number[]} strengths
  * @returns {number[]}

@@ -23,7 +23,7 @@ export class Phases {
     this.end = end;
   }
 
-  /** Return where a gesture begins that skips its preparation: as late as it can blend in and be ready. */
+  /** Return where a gesture begins if it skips its preparation: as late as it can blend in and be ready. */
   skip(blendIn) {
     return Math.max(this.start, this.ready - Math.max(blendIn, LEAST_BLEND));
   }

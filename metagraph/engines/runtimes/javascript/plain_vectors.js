@@ -1,6 +1,6 @@
 /**
- * Vectors and turns as plain tuples, for what is worked out one pose at a time, the same in all languages. Vectors are x, y,
- * z; quaternions xyzw, of length 1.
+ * Vectors and rotations as plain tuples, for code that computes one pose at a time, the same in all languages. Vectors are
+ * x, y, z; quaternions xyzw, of length 1.
  *
  * Translated from metagraph/motion/plain_vectors.py; change that, and translate anew.
  */
@@ -55,7 +55,7 @@ export function between(a, b) {
 }
 
 /**
- * Return how long a vector is.
+ * Return the length of a vector.
  * @param {[number, number, number]} v
  * @returns {number}
  */
@@ -65,7 +65,7 @@ export function length(v) {
 }
 
 /**
- * Return a vector of length 1 in a direction; of no length where there is none.
+ * Return a vector of length 1 in the same direction; the zero vector stays as it is.
  * @param {[number, number, number]} v
  * @returns {[number, number, number]}
  */
@@ -85,7 +85,7 @@ export function unitTurn(q) {
 }
 
 /**
- * Return the turn back.
+ * Return the inverse rotation.
  * @param {[number, number, number, number]} q
  * @returns {[number, number, number, number]}
  */

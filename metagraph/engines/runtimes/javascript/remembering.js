@@ -1,5 +1,5 @@
 /**
- * What is remembered of what was played: how often an action was, lately, and until when.
+ * What the planner remembers of played actions: how often each played lately, and until when.
  *
  * Translated from metagraph/playback/planning/remembering.py; change that, and translate anew.
  */
@@ -8,7 +8,7 @@
 export const REMEMBERED = 32; // draws of a stance and kind that spacing can look back on
 
 /**
- * Return what draws of a stance and kind are remembered under.
+ * Return the key under which draws of a stance and kind are remembered.
  * @param {string} stance
  * @param {string} kind
  * @returns {string}
@@ -18,7 +18,7 @@ export function node(stance, kind) {
 }
 
 /**
- * Whether so many other draws came after an action's last one.
+ * Return whether at least this many other draws came after an action's last one.
  * @param {string[]} recent
  * @param {string} ident
  * @param {number} needed
@@ -32,7 +32,7 @@ export function rested(recent, ident, needed) {
 }
 
 /**
- * Note that a cue was played: how often its action was, lately, and until when.
+ * Note that a cue was played: count its action, and note when it ended.
  * @param {Cue} cue
  * @param {Map<string, number>} uses
  * @param {Map<string, string[]>} recent

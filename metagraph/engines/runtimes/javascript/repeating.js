@@ -1,5 +1,5 @@
 /**
- * Say how long actions play that repeat a part of their clip: one cycle of a wave, for as long as wanted.
+ * Say how long actions play that repeat a part of their clip, such as one cycle of a wave.
  *
  * Translated from metagraph/graph/repeating.py; change that, and translate anew.
  */
@@ -7,10 +7,10 @@
 
 export const LEAST_CYCLE = 0.1; // seconds of a part that can repeat
 export const MOST_TIMES = 1000000; // that a cycle plays in a row
-export const LONGEST_REPEAT = 60; // seconds that an action repeats at most where nobody says how long
+export const LONGEST_REPEAT = 60; // most seconds that an action repeats if no request says how long
 
 /**
- * Return the seconds of the part from `start` to `end` of an action's clip if it repeats that, 0 where it plays once.
+ * Return the length in seconds of the part from `start` to `end` that an action repeats, 0 if it plays once.
  * @param {string} kind
  * @param {Timing} timing
  * @param {number} start
@@ -23,7 +23,7 @@ export function cycleOf(kind, timing, start, end) {
 }
 
 /**
- * Return how many whole times, at least once, a cycle plays to come nearest to `seconds`.
+ * Return how many whole times, at least one, a cycle must play to last as close to `seconds` as possible.
  * @param {number} cycle
  * @param {number} seconds
  * @returns {number}
@@ -33,7 +33,7 @@ export function timesPlayed(cycle, seconds) {
 }
 
 /**
- * Return for how many seconds an action plays where nobody says how long, at its own speed.
+ * Return how many seconds an action plays at its own speed if no request says how long.
  * @param {string} kind
  * @param {Timing} timing
  * @param {number} start

@@ -1,8 +1,9 @@
 /**
  * Temporal replanning: meta actions that may clash become a meta plan that does not (Borer et al., section 6.1).
  *
- * Greedy, by start time and then priority. The running action is never touched. Where two overlap, the more important one
- * keeps its time; the other is delayed past it, or cut where it begins, and then goes on with its remainder if it asked to.
+ * Greedy, by start time and then priority. The running action is never touched. If two overlap, the more important one keeps
+ * its time. The other is delayed past it, or cut where it begins; its remainder then plays afterwards if the request says
+ * so.
  *
  * Translated from metagraph/playback/planning/replan.py; change that, and translate anew.
  */
@@ -11,8 +12,8 @@ import { Report } from "./meta_plan.js";
 import { bisectRight, but, insort, sortedBy } from "./basics.js";
 
 /**
- * Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those that
- * say how late they may be are judged where it shows how late they are.
+ * Let new requests wait until `free` seconds, the end of the running action, and drop those that would wait too long.
+ * Requests that say how late they may be are judged later, when their lateness is known.
  * @param {MetaAction[]} asked
  * @param {number} free
  * @param {Settings} settings
@@ -44,9 +45,9 @@ export function delay(asked, free, settings) {
 /**
  * Return the meta plan, ascending and without overlaps, and what became of the rest.
  *
- * What is asked for is placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions that do not
- * overlap come back as they are, so a plan that is placed again stays as it is. Of equal start and priority, the id that
- * sorts first goes first.
+ * Requests are placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions that do not overlap
+ * stay as they are, so a plan that is placed again does not change. If start and priority are equal, the id that sorts first
+ * goes first.
  * @param {MetaAction[]} metas
  * @param {Settings} settings
  * @param {number} busy
@@ -60,7 +61,7 @@ export function replan(metas, settings, busy = -Infinity) {
 }
 
 /**
- * Return what is left of what a model wrote beside what is placed: the first stretch of each that is long enough.
+ * Return the parts of written meta actions that fit beside the placed ones: the first stretch of each that is long enough.
  * @param {MetaAction[]} written
  * @param {MetaAction[]} placed
  * @param {number} shortest
@@ -110,7 +111,7 @@ function _fitted(written, placed, shortest, busy) {
 }
 
 /**
- * Return what decides who is placed first.
+ * Return the sort key that decides which is placed first.
  * @param {MetaAction} meta
  * @returns {[number, number, string, number]}
  */
@@ -172,7 +173,7 @@ function _placed(metas, settings) {
 }
 
 /**
- * Return a meta action from `free` on.
+ * Return a meta action that begins at `free` instead.
  * @param {MetaAction} meta
  * @param {number} free
  * @returns {MetaAction}

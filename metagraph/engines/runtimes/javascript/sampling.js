@@ -41,11 +41,11 @@ import { LEAST_BLEND } from "./phase_times.js";
 import { findPhases } from "./phases.js";
 import { but, maxOf, minOf, thousandths } from "./basics.js";
 
-export const ON_TIME = 0.1; // seconds by which what is asked for may begin later than that, and is on time
+export const ON_TIME = 0.1; // seconds by which a request may begin later and still be on time
 export const LOOP_FADE = 0.6; // seconds of crossfade when a long rest changes from one loop of its stance to another
 
 /**
- * One action of a chain: who may play it, and for a transition on the way the stance it leads to.
+ * One action of a chain: the candidates for it and, for a transition on the way, the stance it leads to.
  *
  * candidates: Action[]; hop: string.
  */
@@ -57,12 +57,12 @@ export class SamplingStep {
 }
 
 /**
- * One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
+ * One layer being planned, cue after cue. It changes while planning, and never leaves the planner.
  *
  * uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
- * meta actions whose chain of transitions plays already. served: keys of those that another's action serves, too. moods:
- * what it is in the mood for, and when. candidates: the actions of each `node` that may be drawn, as far as they were asked
- * for. acted: when the last action ended.
+ * meta actions whose chain of transitions already plays. served: keys of those that the action of another one serves, too.
+ * moods: the mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far. acted:
+ * when the last action ended.
  *
  * project: Project; graph: MetaGraph; seed: number; stance: string; moods: Moods; free: number; acted: number; uses:
  * Map<string, number>; recent: Map<string, string[]>; ended: Map<string, number>; cues: Cue[]; rests: Rest[]; reports:
@@ -105,7 +105,7 @@ export class Performer {
     this.candidates = candidates;
   }
 
-  /** Take a cue as played. */
+  /** Note that a cue is played. */
   note(cue, then) {
     this.cues.push(cue);
     this.free = cue.end;
@@ -114,7 +114,7 @@ export class Performer {
     remember(cue, this.uses, this.recent, this.ended);
   }
 
-  /** When the next action may begin at the earliest. */
+  /** The earliest time at which the next action may begin. */
   get ready() {
     return this.free + (this.ended.size > 0 ? this.project.settings.rest : 0);
   }
@@ -129,7 +129,7 @@ export class Performer {
     return true;
   }
 
-  /** Realise what starts before `end` of a conflict-free meta plan, in order. */
+  /** Realise in order those meta actions of a conflict-free meta plan that start before `end`. */
   perform(metas, end) {
     for (const bound of bounds(metas)) {
       const meta = bound.meta;
@@ -221,8 +221,8 @@ export class Performer {
   }
 
   /**
-   * Return those that come least late, if that is not too late; of them those that leave most of what follows its time, and
-   * serve most of it.
+   * Return the candidates that come least late, if that is not too late; among them those that leave the following requests
+   * the most time and serve the most of them.
    */
   timely(bound, fitting, now) {
     const meta = bound.meta;
@@ -277,7 +277,7 @@ export class Performer {
     return timely;
   }
 
-  /** Return what a request that comes late waits for. */
+  /** Return the reason why a request comes late. */
   cause(request, now) {
     if (now <= request.start + FITS) {
       return "its own preparation";
@@ -288,10 +288,7 @@ export class Performer {
     return this.cues.length > 0 ? "what comes before it" : "the time it became known at";
   }
 
-  /**
-   * Return when something that is asked for has to begin at the latest, to be on time; never in the past, where nothing
-   * meets it.
-   */
+  /** Return the latest time at which a requested action has to begin to be on time; never in the past. */
   latest(request) {
     if (request.stroke === null) {
       return request.start;
@@ -312,15 +309,15 @@ export class Performer {
     return request.stroke - least;
   }
 
-  /** Return when what follows an action could begin at the earliest. */
+  /** Return the earliest time at which the next action could begin after this one. */
   over(action, request, now) {
     const shape = this.shape(action, request, now, this.mood(request, now));
     return shape.start + hurried(this.project, action, shape) + this.project.settings.rest - FITS;
   }
 
   /**
-   * Return when an action that is to be played through is left nevertheless: early enough for the first of what follows that
-   * can be in time then, late enough for its own stroke; infinity for never.
+   * Return when an action that should play to its end is left early all the same: early enough for the first following
+   * request that can then be in time, late enough for its own stroke; infinity for never.
    */
   until(action, shape, bound) {
     if (bound.after.length === 0) {
@@ -338,8 +335,8 @@ export class Performer {
   }
 
   /**
-   * Leave the running action early for the first of what is asked for that can be in time then, and where it was `stopped`
-   * in any case. What a model wrote, or is less important, is left at once, the rest where its retraction begins.
+   * Leave the running action early for the first request that can then be in time, or if it was `stopped`. An action that a
+   * model wrote, or that is less important, is left at once; others are left where their retraction begins.
    */
   makeWay(running, asked, now, stopped) {
     if (stopped) {
@@ -389,7 +386,7 @@ export class Performer {
     }
   }
 
-  /** Leave the running action: it goes back to its stance from where it is. A transition ends where it leads. */
+  /** Leave the running action: it returns to its stance from where it is. A transition ends in the stance it leads to. */
   retract(now) {
     const cue = this.cues[this.cues.length - 1];
     const end = now + STOPPED;
@@ -401,7 +398,7 @@ export class Performer {
     this.ended.set(cue.action.id, end);
   }
 
-  /** Return when an action may be drawn again. */
+  /** Return the time from which an action may be drawn again. */
   cooled(action) {
     if (action.cooldown > 0 && this.ended.has(action.id)) {
       return this.ended.get(action.id) + action.cooldown;
@@ -410,8 +407,8 @@ export class Performer {
   }
 
   /**
-   * Return each action in turn: the transitions to get there, then the action itself; None if impossible or needless, or
-   * where the model wrote it and nothing is rested enough.
+   * Return each action in turn: the transitions to get there, then the action itself; None if it is impossible or not
+   * needed, or if the model wrote it and every candidate played too recently.
    */
   steps(meta, now) {
     const request = meta.request;
@@ -529,8 +526,8 @@ export class Performer {
   }
 
   /**
-   * Return the stances after the current one on the shortest way of transitions that can play, the goal last; none where
-   * there is no way. Among equally short ones that whose transitions were placed first.
+   * Return the stances after the current one on the shortest way of transitions that can play, the goal last; empty if there
+   * is no way. Among equally short ways, the one whose transitions were placed first.
    */
   chain(goal) {
     const before = new Map([[this.stance, ""]]);
@@ -562,7 +559,7 @@ export class Performer {
     return [...[...way].reverse()];
   }
 
-  /** Whether an action leaves the layer in a stance that can rest. */
+  /** Return whether an action leaves the layer in a stance that has a loop. */
   arrives(action) {
     const end = action.endStance;
     if (action.kind !== "transition") {
@@ -580,7 +577,7 @@ export class Performer {
     return shapeOf(this.project, action, request, now, this.tempo(action, mood));
   }
 
-  /** Return the mood that something asked for is played in from `at` on, or at its stroke. */
+  /** Return the mood in which a request is played from `at` on, or at its stroke. */
   mood(request, at) {
     if (request === null) {
       return moodAt(this.moods, at);
@@ -592,14 +589,14 @@ export class Performer {
     return changed(mood, request.valence, request.arousal, request.intensity);
   }
 
-  /** Return how fast an action is played, 1 where it was made for the mood. */
+  /** Return the speed of an action in a mood, 1 if it was made for the mood. */
   tempo(action, mood) {
     return (mood.neutral || madeFor(mood, action.tags)) ? 1 : tempo(mood);
   }
 
   /**
-   * Return how large an action is played. Those that move feet or leave for another stance, touch something or were made for
-   * the mood are played as they were made.
+   * Return the extent of an action in a mood. Actions that move the feet, lead to another stance, touch something or were
+   * made for the mood keep their extent.
    */
   extent(action, mood) {
     if (this.graph.layer === "body" || action.kind === "transition" || mood.neutral) {
@@ -609,8 +606,8 @@ export class Performer {
   }
 
   /**
-   * Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood and variety favour, leaving out those used too recently
-   * as long as any others are left.
+   * Draw with p_k ~ likelihood_k / max(c_k, 1), times the factors of mood and variety. Actions used too recently are left
+   * out as long as others are left.
    */
   draw(candidates, key, now, mood) {
     const left = this.spaced(candidates);
@@ -631,7 +628,7 @@ export class Performer {
     return left.find((a) => a.id === chosen);
   }
 
-  /** Return how much likelier variety makes an action. */
+  /** Return the factor by which variety changes an action's likelihood. */
   variety(action, now) {
     const variety = this.project.settings.variety;
     if (variety <= 0 || action.kind === "transition" || !this.ended.has(action.id)) {
@@ -641,7 +638,7 @@ export class Performer {
     return freshness(now - this.ended.get(action.id), needed);
   }
 
-  /** Return those that may be done of one's own accord; see `director`. */
+  /** Return the actions that the character may do by itself; see `director`. */
   fresh(meta, candidates, now) {
     const variety = this.project.settings.variety;
     const layer = this.graph.layer;
@@ -688,7 +685,7 @@ export class Performer {
     return latest;
   }
 
-  /** Return whether something that stands out was done since a time. */
+  /** Return whether an act that stands out was done since a time. */
   shown(since) {
     for (const [ident, end] of this.ended) {
       const action = this.graph.actions.get(ident) ?? null;
@@ -702,7 +699,7 @@ export class Performer {
     return false;
   }
 
-  /** Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on. */
+  /** Leave out actions that need more other actions before they play again. If nothing is left, all need one less, and so on. */
   spaced(candidates) {
     const default_ = this.project.settings.neverTwice ? 1 : 0;
     const first = candidates[0];
@@ -739,7 +736,7 @@ export class Performer {
     return alpha * used;
   }
 
-  /** hops: whether it is a transition on the way to what is asked for. */
+  /** hops: whether it is a transition on the way to the requested action. */
   cue(action, shape, bound, hops, stance, mood) {
     let length = shape.length;
     let into = Math.max(0, action.timing.blendIn);
@@ -788,9 +785,9 @@ export class Performer {
     this.note(cue, cue.then);
     const loop = this.loop(cue.then, cue.meta);
     if (loop !== null) {
-      // The loop begins anew under the action, so that the action's last pose meets the loop's first.
-      // Where the action leaves joints alone the change shows, and takes its time: a transition all of
-      // its own.
+      // The loop begins again under the action, so that the action's last pose meets the loop's first.
+      // On joints that the action does not move, the change shows. It takes its time there, like a
+      // transition.
       const partial = cue.action.limb !== "both" || cue.action.joints.length > 0 || cue.action.jointWeights.length > 0;
       let begin = cue.start + cue.blendIn;
       const until = cue.end - cue.blendOut;
@@ -803,7 +800,7 @@ export class Performer {
     }
   }
 
-  /** Return one of a stance's loops, drawn by likelihood; None where it has none. */
+  /** Return one of a stance's loops, drawn by likelihood; None if it has none. */
   loop(stance, key) {
     const loops = this.graph.of(stance, "stance");
     if (loops.length === 1) {
@@ -817,7 +814,7 @@ export class Performer {
     return loops.find((a) => a.id === chosen);
   }
 
-  /** Where a stance has several loops, change between them in long rests, at a loop's end. */
+  /** Change between the loops of a stance in long rests, at the end of a loop. */
   varyRests(end) {
     const out = [];
     for (const [place, rest] of this.rests.entries()) {
@@ -852,7 +849,7 @@ export class Performer {
 }
 
 /**
- * Return the performer that stands where cues have been played after a past.
+ * Return the performer as it is after a past and the cues that played since.
  * @param {Project} project
  * @param {MetaGraph} graph
  * @param {number} seed

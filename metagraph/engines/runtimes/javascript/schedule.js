@@ -1,8 +1,9 @@
 /**
- * When the life layers do what: drawn from the seed, event by event, then pure in time.
+ * The events of the life layers: drawn from the seed one by one, and then a function of time.
  *
- * Each event depends only on the one before it and on what is asked meanwhile, and its chance on its number. So a schedule
- * grows as a plan does: what has begun stays, tick by tick gives what one call gives, and what lies behind can be forgotten.
+ * Each event depends only on the previous one and on the requests meanwhile; its random draw depends on its number. So a
+ * schedule grows as a plan does: events that have begun stay, many short extensions give the same as one long one, and past
+ * events can be forgotten.
  *
  * Translated from metagraph/playback/life/schedule.py; change that, and translate anew.
  */
@@ -45,12 +46,13 @@ export const BREATHES_IN = 0.55; // seconds
 export const STRETCH = 0.5;
 
 /**
- * Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's rows stand in the order given here.
+ * Everything that the life layers do by themselves from 0 to `end` seconds, in lanes. The columns of a lane's rows are
+ * listed here.
  *
- * modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length s, depth.
+ * modes: index in MODES. moods: valence, arousal, intensity. targets: what the gaze looks at. breaths: length s, depth.
  * aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up,
- * degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. swells, emphases: of the face (`expressions`). drawn:
- * seconds up to which the lanes are filled; the rest is what they were drawn from.
+ * degrees. blinks: 0 spontaneous, 1 on a stressed syllable, 2 requested. swells, emphases: of the face (`expressions`).
+ * drawn: seconds up to which the lanes are filled; the rest is what they were drawn from.
  *
  * end: number; drawn: number; modes: Lane; moods: Lane; targets: GazeTarget[]; breaths: Lane; aversions: Lane; saccades:
  * Lane; blinks: Lane; swells: Lane; emphases: Lane; life: ?Life; track: ?Track; voices: ?Voices; seed: number.
@@ -90,7 +92,7 @@ export class Schedule {
     this.seed = seed;
   }
 
-  /** Return the schedule without what ended before `seconds`; what is drawn on from it stays as it would have been. */
+  /** Return the schedule without events that ended before `seconds`; later draws do not change. */
   since(seconds) {
     const breaths = this.breaths.since(seconds);
     const aversions = this.aversions.since(seconds);
@@ -118,9 +120,9 @@ export class Schedule {
 }
 
 /**
- * Return the schedule to `end` seconds. What `before` holds that begins before `now` stays exactly as it was.
+ * Return the schedule to `end` seconds. Events of `before` that begin before `now` stay exactly as they were.
  *
- * What it holds for later is kept, too, where nothing it was drawn from has changed.
+ * Its later events stay, too, if nothing that they were drawn from has changed.
  * @param {Life} life
  * @param {Track} track
  * @param {Voices} voices
@@ -177,7 +179,7 @@ export function schedule(life, track, voices, seed, end, before, now) {
 }
 
 /**
- * Return "" where nothing a schedule was drawn from has changed, "places" where only those have, else "all".
+ * Return "" if nothing that a schedule was drawn from has changed, "places" if only places have, else "all".
  * @param {Schedule} before
  * @param {Life} life
  * @param {Track} track
@@ -199,9 +201,9 @@ function _change(before, life, track, voices, seed) {
 }
 
 /**
- * One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks change; manners:
- * what mode and mood make of the amounts from each on; strict: 1 where the look then is, else 0. phrases: when the character
- * begins to speak.
+ * One extension: lanes filled from `cut` to `drawn` seconds. edges: when modes, moods or strict looks change; manners: the
+ * factors of the amounts from each edge on; strict: 1 if the look is strict from there on, else 0. phrases: when the
+ * character begins to speak.
  *
  * life: Life; track: Track; voices: Voices; seed: number; cut: number; drawn: number; calm: number; modes: Lane; moods:
  * Lane; targets: GazeTarget[]; edges: number[]; manners: Manner[]; strict: number[]; phrases: number[].
@@ -239,7 +241,7 @@ export class LifeDraw {
     this.phrases = phrases;
   }
 
-  /** Lay modes, moods and strict looks out in one row of segments. */
+  /** Combine modes, moods and strict looks into one list of segments. */
   begin(cut) {
     this.cut = cut;
     const talks = this.track.modes.filter((change) => change.mode === "talking").map((change) => change.start);
@@ -266,25 +268,25 @@ export class LifeDraw {
     }
   }
 
-  /** Return what keys the chances of an event: those of `chance_of`, 0..1, without the ends. */
+  /** Return the key of an event's random numbers, for `chance_of`. */
   key(what, number) {
     return keyed(this.seed, what, String(number));
   }
 
-  /** Return the place of the segment that a time is in. */
+  /** Return the index of the segment that contains a time. */
   placeAt(seconds) {
     return Math.max(0, bisectRight(this.edges, seconds) - 1);
   }
 
-  /** Return whether the character thinks at a time: then it looks up and aside, never down. */
+  /** Return whether the character is thinking at a time: then it looks up and aside, never down. */
   thinks(seconds) {
     const mode = Math.max(0, bisectRight(this.modes.times, seconds) - 1);
     return MODES[Math.trunc(this.modes.rows[mode][0])] === "thinking";
   }
 
   /**
-   * Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each segment; infinity
-   * where it is not before the end.
+   * Return when `need` seconds have passed since `seconds` on a clock that runs at these rates, one for each segment;
+   * infinity if that is after the end.
    */
   after(seconds, need, rates) {
     let at = seconds;
@@ -303,7 +305,7 @@ export class LifeDraw {
     return Infinity;
   }
 
-  /** Each breath follows the one before; the first began before time 0, so that not everybody breathes alike. */
+  /** Draw breaths, each after the previous one. The first began before time 0, so that characters do not breathe in step. */
   breaths(lane) {
     const times = [];
     const rows = [];
@@ -355,7 +357,7 @@ export class LifeDraw {
     return wanted <= (1 + STRETCH) * length ? wanted : length;
   }
 
-  /** The eyes' small jumps. */
+  /** Draw the small jumps of the eyes. */
   saccades(lane) {
     if (this.life.saccadeRate <= 0 || this.calm <= 0) {
       return lane;
@@ -382,7 +384,7 @@ export class LifeDraw {
     }
   }
 
-  /** Looks away for a moment. */
+  /** Draw short looks away. */
   aversions(lane) {
     const life = this.life;
     if (life.aversionRate <= 0 || life.aversionLength <= 0 || life.aversionAngle <= 0 || this.calm <= 0) {
@@ -422,7 +424,7 @@ export class LifeDraw {
     }
   }
 
-  /** Blinks of themselves, on stressed syllables and asked for, whichever comes first. */
+  /** Draw blinks: spontaneous ones, those on stressed syllables and requested ones, in the order in which they come. */
   blinks(lane) {
     const life = this.life;
     const shut = life.blinkClose + life.blinkOpen;
@@ -496,7 +498,7 @@ export class LifeDraw {
 }
 
 /**
- * Return what extends a schedule from `cut` to `drawn` seconds, with modes and looks in place.
+ * Return the draw that extends a schedule from `cut` to `drawn` seconds, with modes and looks filled in.
  * @param {Life} life
  * @param {Track} track
  * @param {Voices} voices

@@ -1,5 +1,5 @@
 /**
- * What of an utterance was spoken until a moment, for the history that a language model goes on from.
+ * The part of an utterance that was spoken until a moment, for the history from which a language model continues.
  *
  * Translated from metagraph/speech/spoken_so_far.py; change that, and translate anew.
  */
@@ -10,8 +10,8 @@ import { isPaused, isSameUtterance } from "./utterances.js";
 import { telling, wordsOf } from "./word_gestures.js";
 
 /**
- * Return what of an utterance was spoken until `seconds`, up to the word that was begun, and that word; "" where nothing
- * was. said: everything, by start.
+ * Return the part of an utterance that was spoken until `seconds`, up to the word that was begun, and that word; "" if
+ * nothing was spoken. said: all speeches, by start.
  * @param {Alphabet} alphabet
  * @param {Speech[]} said
  * @param {string} ident
@@ -37,7 +37,7 @@ export function spokenUntil(alphabet, said, ident, seconds) {
 }
 
 /**
- * Return the pieces of the utterance of an id that was said last; one that goes on after a pause is one.
+ * Return the pieces of the last utterance with an id; one that continues after a pause is one utterance.
  * @param {Speech[]} said
  * @param {string} ident
  * @param {number} seconds
@@ -60,7 +60,7 @@ function _pieces(said, ident, seconds) {
 }
 
 /**
- * Return what of one piece was spoken in its first `seconds`, and the last word of that.
+ * Return the part of one piece that was spoken in its first `seconds`, and its last word.
  * @param {Alphabet} alphabet
  * @param {Speech} piece
  * @param {number} seconds
@@ -102,7 +102,7 @@ function _spokenOf(alphabet, piece, seconds) {
 }
 
 /**
- * Whether a letter behind a word is no mark of it.
+ * Return whether a letter after a word is not a mark that belongs to it.
  * @param {Alphabet} alphabet
  * @param {string} letter
  * @returns {boolean}
@@ -112,7 +112,7 @@ function _parts(alphabet, letter) {
 }
 
 /**
- * Return the place behind a word in a text, from `first` on; -1 where it is not there.
+ * Return the index after a word in a text, searching from `first`; -1 if it is not there.
  * @param {string[]} letters
  * @param {string[]} word
  * @param {number} first

@@ -1,11 +1,10 @@
 /**
- * The mouth shapes a voice makes, heard from its samples as they come in, where nobody tells them: the levels of four bands
- * beside the loudest that was heard. Nothing is waited for but a shape's shortest length, so that every engine can hear what
- * it plays.
+ * The mouth shapes of a voice, detected from its samples as they come in, from the levels of four bands relative to the
+ * loudest so far. The only delay is the shortest length of a shape, so every engine can analyse the sound that it plays.
  *
- * Open vowels have more around 800 Hz, the first formant of an open mouth, than around 300; tongues in front more around
- * 2200, their second formant; sibilants most of all above 3500. The bounds are ours, chosen beside what `speech.sound` makes
- * of whole recordings.
+ * Open vowels have more energy around 800 Hz, the first formant of an open mouth, than around 300 Hz. Front vowels have more
+ * around 2200 Hz, their second formant. Sibilants have most above 3500 Hz. The bounds are ours, chosen by comparison with
+ * the results of `speech.sound` on whole recordings.
  *
  * Translated from metagraph/playback/life/streamed_voice.py; change that, and translate anew.
  */
@@ -27,14 +26,14 @@ export const OPEN = -1.7; // dB of the second band beside the first: an open mou
 export const HALF = -5; // half open
 export const FRONT_HALF = -6; // dB of the third band beside the second: the tongue is in front, of half open mouths
 export const FRONT = -8.5; // and of others
-export const LEAST = 0.03; // seconds: what is shorter is no shape
-export const STEP = 0.06; // seconds after which a shape that grows or wanes
-export const GROWS = 0.15; // by so much is told again
-export const BEHIND = 0.25; // seconds by which a piece may come after its time; one that is later is heard as it comes
+export const LEAST = 0.03; // seconds: anything shorter is not a shape
+export const STEP = 0.06; // seconds after which a shape that gets stronger or weaker
+export const GROWS = 0.15; // by this much is reported again
+export const BEHIND = 0.25; // seconds by which a piece may come late; a later one is heard when it comes
 
 /**
- * A voice that is heard. rate: samples a second, 8000 or more. seconds: up to which it was heard. The rest is what it
- * remembers. missed: seconds of the line in which no sound came.
+ * The state of a voice that is analysed. rate: samples a second, 8000 or more. seconds: how much of it was heard. missed:
+ * seconds of the line in which no sound came. The other fields are memory.
  *
  * rate: number; seconds: number; missed: number; shape: string; told: number; weight: number; coming: string; since: number;
  * loudest: number; judged: number; inside: number; filters: number[]; memory: number[]; energy: number[].
@@ -73,7 +72,7 @@ export class StreamedVoice {
   }
 
   /**
-   * Take in the next samples, -1..1; return the shapes that begin in them: visemes of the set "oculus", at seconds from the
+   * Analyse the next samples, -1..1; return the shapes that begin in them: visemes of the set "oculus", at seconds from the
    * line's start.
    */
   hear(samples) {
@@ -102,7 +101,7 @@ export class StreamedVoice {
     return out;
   }
 
-  /** Go on where the line is, when its sound came too late. said: seconds of the line that are over. */
+  /** Skip to where the line is if its sound came too late. said: seconds of the line that are over. */
   follow(said) {
     if (this.seconds < said - BEHIND) {
       this.missed += said - this.seconds;
@@ -125,7 +124,7 @@ export class StreamedVoice {
     }
   }
 
-  /** Tell what the last moment is; return whether a shape begins or changes, at `told`. */
+  /** Classify the last moment; return whether a shape begins or changes, at `told`. */
   judge(size) {
     const now = this.judged * size / this.rate;
     const levels = this.energy.map((energy) => 10 / Math.log(10) * Math.log(energy / size + 1e-12));
@@ -155,7 +154,7 @@ export class StreamedVoice {
     return false;
   }
 
-  /** Return the shape of a moment. levels: dB of the bands, less the highest at low rates. */
+  /** Return the shape of a moment. levels: dB of the bands, without the highest band at low rates. */
   shapeOf(levels) {
     const low = levels[0];
     const middle = levels[1];

@@ -1,5 +1,5 @@
 /**
- * All that was asked for and lasts, in order; see `items`. Times are seconds.
+ * All requests that last, in order; see `items`. Times are seconds.
  *
  * Translated from metagraph/playback/life/track.py; change that, and translate anew.
  */
@@ -19,7 +19,7 @@ import { lasting } from "./mood.js";
 import { bisectRight, but, insort } from "./basics.js";
 
 /**
- * All of it, each by start. Speeches do not overlap.
+ * All lasting requests, each kind sorted by start. Speeches do not overlap.
  *
  * looks: LookAt[]; speeches: Speech[]; modes: ModeFrom[]; places: PlaceFrom[]; blinks: BlinkAt[]; stays: StayFrom[]; moods:
  * MoodFrom[].
@@ -35,7 +35,7 @@ export class Track {
     this.moods = moods;
   }
 
-  /** Return the ids of all of it. */
+  /** Return the ids of all items. */
   idents() {
     const out = this.looks.map((x) => x.id);
     out.push(...this.speeches.map((x) => x.id));
@@ -53,7 +53,7 @@ export class Track {
     return last !== null && last.on && seconds < last.end;
   }
 
-  /** Return the mode that was asked for at a time, or talking while something is said; None where neither tells. */
+  /** Return the mode requested at a time, or talking while something is said; None if neither applies. */
   toldMode(seconds) {
     const asked = bisectRight(this.modes.map((m) => m.start), seconds) - 1;
     if (asked >= 0 && this.modes[asked].mode !== null) {
@@ -63,7 +63,7 @@ export class Track {
     return (said >= 0 && seconds < this.speeches[said].end) ? "talking" : null;
   }
 
-  /** Return the track without items of these ids that begin at `now` or later; what has begun ends now, if it can. */
+  /** Return the track without items of these ids that begin at `now` or later; those that have begun end now, if they can. */
   without(idents, now = -Infinity) {
     if (idents.size === 0 || !this.idents().some((ident) => idents.has(ident))) {
       return this;
@@ -82,7 +82,7 @@ export class Track {
     );
   }
 
-  /** Return the track with those of another, whose speeches may overlap each other's. */
+  /** Return the track with the items of another one, whose speeches may overlap. */
   joined(more) {
     if (more.idents().length === 0) {
       return this;
@@ -119,7 +119,7 @@ export class Track {
     return new Track([...looks], [...said], [...modes], [...places], [...blinks], [...stays], [...moods]);
   }
 
-  /** Return the track without what no time from `seconds` on needs. */
+  /** Return the track without items that are not needed from `seconds` on. */
   since(seconds) {
     // Those that no later one has replaced; also what is over: it tells since when what shows has shown.
     let looks = [];
@@ -145,12 +145,12 @@ export class Track {
     );
   }
 
-  /** Return the last of an id that is said. */
+  /** Return the last speech with an id. */
   lastSpeech(ident) {
     return [...this.speeches].reverse().find((s) => s.id === ident) ?? null;
   }
 
-  /** Whether all is the same that chance depends on: where things are, and what stays, is not. */
+  /** Return whether everything is the same that random draws depend on. Places and stays are not part of it. */
   drawsLike(other) {
     if (!alikeLooks(this.looks, other.looks) || !alikeSpeeches(this.speeches, other.speeches)) {
       return false;
@@ -161,7 +161,7 @@ export class Track {
     return alikeModes(this.modes, other.modes) && alikeBlinks(this.blinks, other.blinks);
   }
 
-  /** Whether all is the same. */
+  /** Return whether everything is the same. */
   like(other) {
     if (!alikePlaces(this.places, other.places) || !alikeStays(this.stays, other.stays)) {
       return false;

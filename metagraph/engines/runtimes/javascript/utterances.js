@@ -1,8 +1,8 @@
 /**
- * What is done to something said: it is broken off, paused, gone on with, finished. An utterance is all that is said under
- * one id, piece by piece, until it is over. Times are seconds.
+ * Break off, pause, resume and finish utterances. An utterance is everything that is said under one id, piece by piece,
+ * until it is over. Times are seconds.
  *
- * What is paused lies in a time that never comes (`PAUSED`), each utterance in a place of its own there.
+ * A paused utterance is moved to a time that never comes (`PAUSED`), each to a slot of its own.
  *
  * Translated from metagraph/playback/life/utterances.py; change that, and translate anew.
  */
@@ -19,7 +19,8 @@ export const EARLIER = 0.03; // seconds by which it can stop sooner, since a mou
 export const TOGETHER = 0.001; // seconds between two pieces of one utterance, at most
 
 /**
- * Return when a voice can begin: sooner than gestures, which blend. Nothing has been shown at the very beginning.
+ * Return when a voice can begin: sooner than gestures, which blend. At the very beginning it can begin at once, because
+ * nothing has been shown.
  * @param {number} now
  * @param {number} lookahead
  * @returns {number}
@@ -29,7 +30,7 @@ export function findSoon(now, lookahead) {
 }
 
 /**
- * Return whether what begins then is paused.
+ * Return whether an item with this start is paused.
  * @param {number} start
  * @returns {boolean}
  */
@@ -38,7 +39,7 @@ export function isPaused(start) {
 }
 
 /**
- * Return whether a piece can be added to though it does not run: more was promised, or it is paused.
+ * Return whether more can be added to a piece that is not being said: more was announced, or it is paused.
  * @param {Speech} speech
  * @returns {boolean}
  */
@@ -47,7 +48,7 @@ export function takesMore(speech) {
 }
 
 /**
- * Return whether an utterance is not over at `now`: it is said, comes, is paused, or has more to come.
+ * Return whether an utterance is not over at `now`: it is being said, will be said, is paused, or expects more.
  * @param {Speech[]} speeches
  * @param {string} ident
  * @param {number} now
@@ -77,8 +78,8 @@ export function findUtterances(track, what, now) {
 }
 
 /**
- * Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon`; where its sounds
- * are not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
+ * Return when the voice of an utterance stops: at the end of the current sound, at `soon` at the latest; at once if its
+ * sounds are unknown or it is in a pause; at its start if it has not begun. now: when gestures can stop.
  * @param {Alphabet} alphabet
  * @param {Track} track
  * @param {string} ident
@@ -105,7 +106,7 @@ export function findStop(alphabet, track, ident, soon, now) {
 }
 
 /**
- * Return a time among those that never come in which nothing lies.
+ * Return a free slot among the times that never come.
  * @param {Track} track
  * @returns {number}
  */
@@ -114,7 +115,7 @@ export function findSlot(track) {
 }
 
 /**
- * Return the track with an utterance over at `stop`: what comes of it is not said.
+ * Return the track with an utterance ended at `stop`: its later pieces are not said.
  * @param {Track} track
  * @param {string} ident
  * @param {number} stop
@@ -133,7 +134,7 @@ export function breakOff(track, ident, stop) {
 }
 
 /**
- * Return the track with an utterance that is over when all that is known of it was said.
+ * Return the track with an utterance that is over once all its known pieces are said.
  * @param {Track} track
  * @param {string} ident
  * @param {number} soon
@@ -144,7 +145,7 @@ export function finishSpeech(track, ident, soon) {
 }
 
 /**
- * Return the track with these speeches, of which an utterance has no more to come. cuts: whether it was broken off.
+ * Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it was broken off.
  * @param {Track} track
  * @param {Speech[]} speeches
  * @param {string} ident
@@ -181,8 +182,8 @@ function _until(mood, end) {
 }
 
 /**
- * Return the track with an utterance that is held from `stop` on, in `slot` (`find_slot`). made: ids of what was asked for
- * it; it waits as long, if it has not begun.
+ * Return the track with an utterance paused from `stop` on, in `slot` (`find_slot`). made: ids of requests that belong to
+ * it; they wait, too, if they have not begun.
  * @param {Track} track
  * @param {string} ident
  * @param {Set<string>} made
@@ -218,7 +219,7 @@ export function pause(track, ident, made, stop, slot) {
 }
 
 /**
- * Return the track with an utterance that goes on at `soon`. made: as for `pause`.
+ * Return the track with an utterance that continues at `soon`. made: as for `pause`.
  * @param {Track} track
  * @param {string} ident
  * @param {Set<string>} made
@@ -244,7 +245,7 @@ export function resume(track, ident, made, soon) {
 
 /**
  * Return the track with more speeches, and with the looks and moods of `made` that begin from `low` to before `high` moved
- * by so many seconds.
+ * by a number of seconds.
  * @param {Track} track
  * @param {Speech[]} speeches
  * @param {Set<string>} made
@@ -281,8 +282,8 @@ function _moved(track, speeches, made, low, high, by) {
 }
 
 /**
- * Return why an utterance is over at the end of a piece of it: "finished", "interrupted" or "replaced"; "" where it is not
- * over there.
+ * Return why an utterance is over at the end of a piece: "finished", "interrupted" or "replaced"; "" if it is not over
+ * there.
  * @param {Speech[]} speeches
  * @param {Speech} speech
  * @returns {string}
@@ -299,7 +300,7 @@ export function explainEnd(speeches, speech) {
 }
 
 /**
- * Return whether a later piece of the same id goes on with what an earlier one says.
+ * Return whether a later piece of the same id continues an earlier one.
  * @param {Speech} one
  * @param {Speech} other
  * @returns {boolean}

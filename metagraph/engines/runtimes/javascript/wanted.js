@@ -1,5 +1,5 @@
 /**
- * What was asked of the life layers, as segments in time: which mode the character is in, and what it looks at.
+ * Requests of the life layers as segments in time: the mode of the character, and what it looks at.
  *
  * Translated from metagraph/playback/life/wanted.py; change that, and translate anew.
  */
@@ -19,8 +19,8 @@ export const PLACE = 2;
 export const BEGIN = 3;
 
 /**
- * What is looked at from `start` on: a point, or a name whose place the project knows. since: when the look at it began; its
- * place may have changed meanwhile. asked: not of its own accord.
+ * The target of the gaze from `start` on: a point, or a name whose place the project knows. since: when the look at it
+ * began; its place may have changed meanwhile. asked: whether a request set it.
  *
  * start: number; to: Spot; since: number; amount: number; strict: boolean; asked: boolean.
  */
@@ -34,7 +34,7 @@ export class GazeTarget {
     this.asked = asked;
   }
 
-  /** Whether it is the same but for its times. */
+  /** Return whether it is the same apart from its times. */
   like(other) {
     if (this.amount !== other.amount || this.strict !== other.strict || this.asked !== other.asked) {
       return false;
@@ -44,7 +44,7 @@ export class GazeTarget {
 }
 
 /**
- * Return the mode asked for; where none is, talking while something is said and idle otherwise.
+ * Return the requested mode; without one, talking while something is said and idle otherwise.
  * @param {Track} track
  * @param {number} seconds
  * @returns {string}
@@ -79,7 +79,7 @@ export function modesBetween(track, start, end) {
 }
 
 /**
- * Return what a character is in the mood for: what its life has set, and what is told over time.
+ * Return the moods of a character: the one set in its life layers, and those requested over time.
  * @param {Life} life
  * @param {Track} track
  * @returns {Moods}
@@ -107,7 +107,7 @@ export function moodsBetween(moods, start, end) {
 }
 
 /**
- * Return what a mode makes of the amounts, in a mood.
+ * Return the factors of the amounts for a mode and a mood.
  * @param {Manner} ways
  * @param {Mood} mood
  * @returns {Manner}
@@ -121,9 +121,9 @@ export function waysIn(ways, mood) {
 }
 
 /**
- * Return what is looked at from `start` to before `end`; the first begins at `start`.
+ * Return the targets of the gaze from `start` to before `end`; the first begins at `start`.
  *
- * The latest look holds until it ends or another of its importance or more begins; a lesser one waits beneath.
+ * The latest look holds until it ends or another of at least the same importance begins; a less important one waits.
  * @param {Track} track
  * @param {number} start
  * @param {number} end
@@ -135,9 +135,9 @@ export function targetsBetween(track, start, end) {
   changes.push(...[...track.places.entries()].filter(([n, p]) => p.start >= start).map(([n, p]) => [p.start, PLACE, n]));
   changes.push([start, BEGIN, 0]);
   changes = sortedBy(changes, (c) => [c[0], c[1]]);
-  let looks = []; // places of looks, the most important first; those beneath are older or lesser
+  let looks = []; // indices of looks, the most important first; the others are older or less important
   const places = new Map();
-  for (const place of track.places) { // of a point that is told again and again there are thousands
+  for (const place of track.places) { // a point that is sent again and again has thousands
     if (place.start < start) {
       places.set(place.name, place.point);
     }

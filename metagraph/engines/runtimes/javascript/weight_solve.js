@@ -1,12 +1,12 @@
 /**
- * How a standing body answers its arms: hips give way, spine and legs make up for it, feet stay.
+ * How a standing body reacts to its arms: the hips give way, spine and legs compensate, and the feet stay.
  *
- * Rotations are quaternions xyzw, lengths metres; places are those in a rig's list of joints. Worked out one pose at a time,
- * in plain numbers, the same in all languages.
+ * Rotations are quaternions xyzw, lengths metres; a place is an index into a rig's list of joints. The code computes one
+ * pose at a time, with plain numbers, the same in all languages.
  *
- * By how much: whoever stands keeps the centre of mass over the feet, so the hips go as far back as the arms carry it ahead
- * (de Leva 1996 has what each segment weighs; that trunk and legs move against a raised arm: Bouisset and Zattara 1987). The
- * other amounts are ours, chosen by eye on the sample.
+ * How much: a standing person keeps the centre of mass over the feet, so the hips move back as far as the arms move it
+ * ahead. The weight of each segment is from de Leva 1996. That trunk and legs move against a raised arm is from Bouisset and
+ * Zattara 1987. The other amounts are ours, chosen by eye on the sample.
  *
  * Translated from metagraph/motion/weight_solve.py; change that, and translate anew.
  */
@@ -14,8 +14,8 @@
 import { REACHED, bring, spread } from "./contact_solve.js";
 import { back, dot, length, minus, plus, rotated, scaled, times } from "./plain_vectors.js";
 
-export const BALANCE = 1.4; // of how far the arms carry the centre of mass away, the hips give way
-export const HASTE = 0.12; // seconds of the arms' speed that add to that
+export const BALANCE = 1.4; // factor of the arms' shift of the centre of mass by which the hips compensate
+export const HASTE = 0.12; // seconds of the arms' speed that are added to the shift
 export const DIP = 0.05; // seconds: arms that rise this fast press the body down, half as far at most
 export const SPIN = 30; // seconds: how far the pelvis turns against what arms turn about the vertical
 export const ROLL = 3; // radians that the pelvis rolls for a shift to a side of its own height, and
@@ -27,8 +27,8 @@ export const STANDING = 0.15; // and this much above it stands altogether
 export const GIVE = 0.5; // of a shift: over so much a leg's full length makes itself felt
 
 /**
- * A joint that turns. left, up, ahead: the character's directions in its own space. share: of the hips' turn, below 0
- * against it.
+ * A joint that turns. left, up, ahead: the character's directions in its own space. share: of the hips' rotation, below 0
+ * for the opposite direction.
  *
  * place: number; left: [number, number, number]; up: [number, number, number]; ahead: [number, number, number]; share:
  * number.
@@ -58,10 +58,10 @@ export class WeightCollar {
 }
 
 /**
- * What of a skeleton answers its arms. body: joints, its `arms` being the legs, left and right, its `hands` the names of the
- * hands. bends: from the hips up. knees: where straight legs bend to, in the upper legs' own spaces. levers: how far to the
- * left and ahead of the hips arms are. up: the character's up. height: of the figure, metres. strength: how much of the
- * arms' layer counts, 0..1.
+ * The part of a skeleton that reacts to its arms. body: its joints; its `arms` are the legs, left and right, its `hands` the
+ * names of the hands. bends: from the hips up. knees: the direction in which straight legs bend, in the upper legs' own
+ * spaces. levers: how far the arms are to the left and ahead of the hips. up: the character's up direction. height: of the
+ * figure, metres. strength: how much of the arms' layer counts, 0..1.
  *
  * body: ContactRig; bends: WeightBend[]; collars: WeightCollar[]; knees: [number, number, number][]; levers: [number,
  * number][]; up: [number, number, number]; height: number; strength: number.
@@ -80,7 +80,7 @@ export class WeightRig {
 }
 
 /**
- * Whether there is anything to answer.
+ * Return whether there is anything to react to.
  * @param {number[]} drive
  * @returns {boolean}
  */
@@ -89,9 +89,9 @@ export function movesBody(drive) {
 }
 
 /**
- * Change a pose of the rig's joints by what its arms do; return whether it did.
+ * Change a pose of the rig's joints in reaction to its arms; return whether it changed.
  *
- * drive: as `posing.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
+ * drive: as `posing.follow_through.driven` returns it. follow, lift: the user's dials. You need not call `spread` first.
  * @param {WeightRig} rig
  * @param {ContactPose} pose
  * @param {number[]} drive
@@ -123,7 +123,7 @@ export function answerArms(rig, pose, drive, follow, lift) {
 }
 
 /**
- * Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs.
+ * Return how much a figure stands: 0 if it sits or lies, 1 on straight legs.
  * @param {WeightRig} rig
  * @param {ContactPose} pose
  * @returns {number}
@@ -144,7 +144,7 @@ export function standsBy(rig, pose) {
 }
 
 /**
- * Shift and turn the hips, undo that in the spine, and bring the legs back to where the feet were.
+ * Shift and rotate the hips, undo that in the spine, and move the legs so that the feet stay.
  * @param {WeightRig} rig
  * @param {ContactPose} pose
  * @param {number[]} drive
@@ -197,8 +197,8 @@ function _giveWay(rig, pose, drive, follow) {
 }
 
 /**
- * Return by how much the hips have to sink for a foot to be within a leg's reach; from a little before that on, so that it
- * sets in gently. reach: how far hip and foot were apart.
+ * Return how far the hips have to sink so that the leg reaches the foot. It sets in gently, a little before the limit.
+ * reach: the distance of hip and foot before.
  * @param {WeightRig} rig
  * @param {ContactPose} pose
  * @param {number} side
@@ -228,7 +228,7 @@ export function hipsSink(rig, pose, side, foot, reach, soft) {
 }
 
 /**
- * Return a number that never gets to `most`, and is itself where small.
+ * Return a number limited smoothly to below `most`; small numbers stay almost as they are.
  * @param {number} x
  * @param {number} most
  * @returns {number}
@@ -238,7 +238,7 @@ function _soft(x, most) {
 }
 
 /**
- * Return the turn about an axis by its length times an angle, radians.
+ * Return the rotation about an axis by its length times an angle, radians.
  * @param {[number, number, number]} axis
  * @param {number} angle
  * @returns {[number, number, number, number]}

@@ -1,11 +1,11 @@
 /**
- * Gestures that go with words, from the words alone: greetings, denial, doubt, contrast, lists, who and where is meant,
- * emphasis, and a beat where nothing of that is said.
+ * Gestures that go with words, from the words alone: greetings, denial, doubt, contrast, lists, persons and places,
+ * emphasis, and a beat where there is none of these.
  *
  * After the idea of BEAT (Cassell, Vilhjalmsson and Bickmore, 2001): a text's words propose gestures by rules and a lexicon
- * that anybody can edit, and of those that would get in each other's way the weaker are left out. A gesture that means
- * something leads its word by more than a beat does (ter Bekke et al. 2024: its stroke by some 0.2 s). All other numbers are
- * ours. Times are seconds from where the text begins.
+ * that anybody can edit, and the weaker ones of those that would collide are left out. A gesture with a meaning precedes its
+ * word by more than a beat does (ter Bekke et al. 2024: its stroke by some 0.2 s). All other numbers are ours. Times are
+ * seconds from where the text begins.
  *
  * Translated from metagraph/speech/word_gestures.py; change that, and translate anew.
  */
@@ -31,9 +31,9 @@ export const INSIDE = "'’-"; // what a word may have in the middle
 export const CLOSING = "\"')”»"; // what may stand between a word and the mark behind it
 
 /**
- * What some words propose. words: small letters; several in a row for a phrase. tags: of a gesture of the arms, the best
- * first; of those a character has the first counts. head: what it does at the same time, "nod", "shake" or nothing.
- * strength: which of two wins.
+ * A gesture that some words propose. words: small letters; several in a row for a phrase. tags: of a gesture of the arms,
+ * the best first; the first one that the character has counts. head: its movement at the same time: "nod", "shake" or
+ * nothing. strength: the stronger of two rules wins.
  *
  * words: string[]; tags: string[]; head: string; strength: number.
  */
@@ -47,8 +47,8 @@ export class GestureRule {
 }
 
 /**
- * A lexicon. question, exclamation: what a sentence's end proposes for its last word that is not small. clause: what one
- * proposes in which no word does.
+ * A lexicon. question, exclamation: proposed at the end of a sentence, for its last content word. clause: proposed for a
+ * clause without other proposals.
  *
  * rules: GestureRule[]; language: string; question: GestureRule; exclamation: GestureRule; clause: GestureRule.
  */
@@ -69,7 +69,7 @@ export class GestureWords {
 }
 
 /**
- * A word of a text. plain: in small letters. mark: what stands behind it.
+ * A word of a text. plain: in small letters. mark: the punctuation after it.
  *
  * text: string; plain: string; start: number; end: number; mark: string.
  */
@@ -84,7 +84,7 @@ export class TextWord {
 }
 
 /**
- * When a synthesiser says a word.
+ * A word with the times at which a synthesiser says it.
  *
  * start: number; end: number.
  */
@@ -96,7 +96,8 @@ export class ToldWord {
 }
 
 /**
- * A gesture that goes with a word. do: "gesture", "nod" or "shake". at: of its stroke. tags: none for the head's.
+ * A gesture that goes with a word. do: "gesture", "nod" or "shake". at: time of its stroke. tags: empty for gestures of the
+ * head.
  *
  * layer: string; at: number; tags: string[]; strength: number; word: string; do: string.
  */
@@ -112,8 +113,8 @@ export class ProposedGesture {
 }
 
 /**
- * What is asked for a gesture. at: seconds of the session, from which on it may begin. stroke: when its stroke is wanted,
- * None for the head's. late: by how much it may come late.
+ * The request for a gesture. at: the earliest second of the session at which it may begin. stroke: the time of its stroke,
+ * None for the head. late: by how many seconds it may come late.
  *
  * do: string; layer: string; tags: string[]; at: number; stroke: ?number; late: number.
  */
@@ -129,7 +130,7 @@ export class GestureAsk {
 }
 
 /**
- * A word, how many letters of the text there are up to its end, and the mark behind it.
+ * A word, the number of letters of the text up to its end, and the mark after it.
  *
  * text: string; end: number; mark: string.
  */
@@ -142,9 +143,10 @@ export class SplitWord {
 }
 
 /**
- * Return a text's words with their times: as a synthesiser told them, else as long as lips would take.
+ * Return a text's words with their times: those of a synthesiser, else as long as lips would take.
  *
- * told: of the words in order; those beyond are left out. seconds: how long all of it takes, where that alone is known.
+ * told: the times of the words in order; words without times are left out. seconds: how long all of it takes, if only that
+ * is known.
  * @param {Alphabet} alphabet
  * @param {string} text
  * @param {ToldWord[]} told
@@ -188,7 +190,7 @@ function _isLetter(alphabet, letter) {
 }
 
 /**
- * Whether there are words among letters, so that there is something to say.
+ * Return whether letters contain words, so that there is something to say.
  * @param {Alphabet} alphabet
  * @param {string[]} letters
  * @returns {boolean}
@@ -236,10 +238,10 @@ function _split(alphabet, letters) {
 }
 
 /**
- * Return the gestures that go with words, in order, none in another's way.
+ * Return the gestures that go with words, in order and without collisions.
  *
- * arms: tags that a character's gestures of the arms have; what it has none for is not proposed. head: whether the head
- * moves. small: words that say little by themselves.
+ * arms: tags of the character's gestures of the arms; others are not proposed. head: whether the head moves. small: words
+ * that say little by themselves.
  * @param {TextWord[]} words
  * @param {Set<string>} arms
  * @param {boolean} head
@@ -279,7 +281,7 @@ export function proposedFor(words, arms, head, lexicon, small, seed) {
 }
 
 /**
- * Return the rule with the longest phrase that begins at a word, and how many words that has; 0 where none does.
+ * Return the rule with the longest phrase that begins at a word, and the number of its words; 0 if there is none.
  * @param {GestureWords} lexicon
  * @param {TextWord[]} words
  * @param {number} n
@@ -301,7 +303,7 @@ function _fitting(lexicon, words, n) {
 }
 
 /**
- * Whether a phrase is said from a word on, and not over a pause.
+ * Return whether a phrase begins at a word, without a pause inside it.
  * @param {TextWord[]} words
  * @param {number} first
  * @param {string[]} parts
@@ -343,8 +345,8 @@ function _of(rule, word, arms, head) {
 }
 
 /**
- * Leave out what is too near to something stronger of its layer; of equals the earlier stays. The same tag twice in a row
- * needs more room.
+ * Leave out gestures that are too near to a stronger one of their layer; of two equal ones the earlier stays. The same tag
+ * twice in a row needs more room.
  * @param {ProposedGesture[]} every
  * @returns {ProposedGesture[]}
  */
@@ -375,8 +377,8 @@ function _inTheWay(one, other) {
 }
 
 /**
- * Return what is asked for gestures of a text that begins at `at` seconds of the session. Those that could not be in time
- * are refused rather than made late.
+ * Return the requests for the gestures of a text that begins at `at` seconds of the session. Gestures that cannot be in time
+ * are refused, not made late.
  * @param {ProposedGesture[]} every
  * @param {number} at
  * @returns {GestureAsk[]}
@@ -395,7 +397,8 @@ export function gestureAsks(every, at) {
 }
 
 /**
- * Return after how many letters the first sentence of a text ends, 0 where it goes on. over: whether the text does not.
+ * Return the number of letters after which the first sentence of a text ends, 0 if it goes on. over: whether the text is
+ * complete.
  * @param {Alphabet} alphabet
  * @param {string[]} letters
  * @param {boolean} over

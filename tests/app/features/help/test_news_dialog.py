@@ -40,7 +40,7 @@ def test_the_changelog_is_shown_and_from_source_nothing_can_be_asked(drive):
     dialog = open_news(drive)
     assert dialog.heading.text() == f"Metagraph {__version__}" and "Added" in dialog.notes.toPlainText()
     assert not dialog.allow.isVisible() and not dialog.look.isVisible()
-    assert "no address" in dialog.said.text()
+    assert "does not know where" in dialog.said.text()
     close(drive, dialog)
 
 
@@ -53,21 +53,21 @@ def test_only_who_allows_it_can_look(drive, address, monkeypatch):
     dialog.allow.setChecked(True)
     assert str(drive.shell.settings.value(ALLOWED)) == "true"
     QTest.mouseClick(dialog.look, Qt.MouseButton.LeftButton)
-    drive.wait(lambda: dialog.heading.text() == "Metagraph 9.0.0 is there")
+    drive.wait(lambda: dialog.heading.text() == "Metagraph 9.0.0 is available")
     assert dialog.notes.toPlainText() == "<b>Faster</b>" and dialog.page.isVisible()
-    assert "Install the new one as you installed this one" in dialog.said.text()
+    assert "Install the new version the same way as this one" in dialog.said.text()
     close(drive, dialog)
 
 
 def test_what_cannot_be_asked_is_said(drive, address, monkeypatch):
     def fail(version, settings):
-        raise UpdateError("The server could not be asked.")
+        raise UpdateError("could not reach the server")
 
     drive.shell.settings.setValue(ALLOWED, "true")
     monkeypatch.setattr(news_dialog, "find_update", fail)
     dialog = open_news(drive)
     QTest.mouseClick(dialog.look, Qt.MouseButton.LeftButton)
-    drive.wait(lambda: dialog.said.text() == "The server could not be asked.")
+    drive.wait(lambda: dialog.said.text() == "could not reach the server")
     assert dialog.look.isEnabled()
     close(drive, dialog)
 
@@ -92,9 +92,9 @@ def test_a_newer_release_is_offered_in_the_status_bar(drive, address, monkeypatc
     assert not drive.shell.notice.isVisible(), "it is off as it comes"
     drive.shell.settings.setValue(ALLOWED, "true")
     main.tell_news(drive.window)
-    drive.wait(lambda: drive.shell.notice.text() == "Metagraph 9.0.0 is there…")
+    drive.wait(lambda: drive.shell.notice.text() == "Metagraph 9.0.0 is available…")
     drive.shell.notice.click()
     dialog = drive.window.findChild(NewsDialog)
-    assert dialog.heading.text() == "Metagraph 9.0.0 is there"
+    assert dialog.heading.text() == "Metagraph 9.0.0 is available"
     drive.wait(dialog.isActiveWindow)
     close(drive, dialog)

@@ -6,8 +6,9 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// A meta action with when the next more important one begins (limit), and the next as important that was asked for (wish);
-    /// infinity where there is none. after: those as important that were asked for and say how late they may be, the next first.
+    /// A meta action and its bounds. limit: when the next more important one begins; wish: when the next equally important
+    /// request begins; infinity if there is none. after: equally important requests that say how late they may be, the next one
+    /// first.
     /// </summary>
     public sealed class Bound
     {
@@ -25,7 +26,7 @@ namespace Metagraph
         }
     }
 
-    /// <summary>The first of some meta actions of a rank, written or asked for, and when it starts.</summary>
+    /// <summary>The first of some meta actions of a rank, written or requested, and when it starts.</summary>
     public sealed class _First
     {
         public double Rank;
@@ -42,9 +43,9 @@ namespace Metagraph
 
     public static class BoundsRules
     {
-        public const int LookedAt = 6; // how many that follow a meta action are told
+        public const int LookedAt = 6; // how many of those that follow a meta action are listed
 
-        /// <summary>Return each meta action with what bounds it.</summary>
+        /// <summary>Return each meta action with its bounds.</summary>
         public static List<Bound> Bounds(List<MetaAction> metas)
         {
             var out_ = new List<Bound>();
@@ -96,7 +97,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return when a meta action may begin at the earliest. One whose stroke is judged is placed where that comes.
+        /// Return the earliest time at which a meta action may begin. One whose stroke is judged is placed where its stroke
+        /// comes.
         /// </summary>
         public static double Begins(MetaAction meta)
         {

@@ -6,9 +6,10 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language can mix alike.
+    /// Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language mixes in the same
+    /// way.
     ///
-    /// Nothing is remembered between draws, so changing one request leaves the draws of all others as they were.
+    /// Draws remember nothing, so a change of one request does not change the draws of the others.
     /// </summary>
     public static class ChoiceRules
     {
@@ -18,14 +19,14 @@ namespace Metagraph
         /// Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero byte, then
         /// mixed.
         ///
-        /// The seed, mixed, is xored into FNV's offset basis.
+        /// The mixed seed is xored into FNV's offset basis.
         /// </summary>
         public static uint Key32(uint seed, params string[] words)
         {
             return HashingRules.Mix(Keyed(seed, words));
         }
 
-        /// <summary>Return what draws of one key have in common: the hash of a seed and words before it is mixed.</summary>
+        /// <summary>Return the hash of a seed and words before it is mixed, which all draws of one key share.</summary>
         public static uint Keyed(uint seed, params string[] words)
         {
             var value = HashingRules.Begun(seed);
@@ -42,15 +43,15 @@ namespace Metagraph
             return (HashingRules.Mix(Keyed(seed, words)) + 0.5) / All;
         }
 
-        /// <summary>Return what `uniform` does with one word more than a key has.</summary>
+        /// <summary>Return the number that `uniform` returns for a key and one more word.</summary>
         public static double ChanceOf(uint key, string purpose)
         {
             return (HashingRules.Mix(HashingRules.Absorb(key, purpose)) + 0.5) / All;
         }
 
         /// <summary>
-        /// Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, which any language can do alike: `a =
-        /// ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+        /// Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, in a way that any language can compute:
+        /// `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
         /// </summary>
         public static double LogNormal(double mean, double deviation, double u, double v)
         {
@@ -60,7 +61,7 @@ namespace Metagraph
             return mean * Math.Exp(Math.Sqrt(spread) * z - spread / 2.0);
         }
 
-        /// <summary>Return one of the ids, as `picked` does.</summary>
+        /// <summary>Return one of the ids, chosen as by `picked`.</summary>
         public static string Pick(uint seed, string key, string purpose, Dictionary<string, double> weights)
         {
             return Picked(Keyed(seed, key), purpose, weights);
@@ -69,8 +70,8 @@ namespace Metagraph
         /// <summary>
         /// Return one of the ids, id k with probability weight_k / sum.
         ///
-        /// Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or removing one
-        /// candidate changes the choice only where that candidate wins. Raises ValueError when no weight is positive.
+        /// Each id draws its own exponential time, -log(u_k) / weight_k, and the shortest wins. So adding or removing a candidate
+        /// changes the choice only if that candidate wins. Raises ValueError when no weight is positive.
         /// </summary>
         public static string Picked(uint key, string purpose, Dictionary<string, double> weights)
         {

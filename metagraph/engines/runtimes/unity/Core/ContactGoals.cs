@@ -6,15 +6,15 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// Find where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by how much of
-    /// it shows.
+    /// Find the goals that contacts set for the hands at a time: contacts of the cue that plays and of the loops under it, each
+    /// weighted by how much of it shows.
     /// </summary>
     public static class ContactGoalsRules
     {
         public const double Least = 1e-06; // of a hand: goals with less weight are not solved
 
         /// <summary>
-        /// Return where a layer wants the hands at a time.
+        /// Return a layer's goals for the hands at a time.
         ///
         /// `cue` is the one that plays, if it has motion. `place` is the index of the rest in force, -1 for none. `strength` is
         /// how much of the arms the layer moves, 0..1.
@@ -46,7 +46,7 @@ namespace Metagraph
                 if (cue.Action.Contacts.Count > 0)
                 {
                     var left = CueTimesRules.SeamLeft(cue, time);
-                    if (left > 0.0) // what the cycle before wanted at its end, as far as its pose is still shown
+                    if (left > 0.0) // the goals at the end of the previous cycle, as far as its pose still shows
                     {
                         out_.AddRange(Goals(
                             rig,
@@ -80,7 +80,7 @@ namespace Metagraph
             return out_;
         }
 
-        /// <summary>Return where a loop wants the hands, less what the cue above it covers.</summary>
+        /// <summary>Return a loop's goals for the hands, reduced by the cue above it.</summary>
         private static List<HandGoal> LoopGoals(
             ContactRig rig,
             Graph project,

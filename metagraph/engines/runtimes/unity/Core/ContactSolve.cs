@@ -5,7 +5,7 @@ using System.Linq;
 
 namespace Metagraph
 {
-    /// <summary>Places of an arm's joints, and of all joints from its upper arm on, parents first.</summary>
+    /// <summary>The places of an arm's joints, and of all joints from its upper arm on, parents first.</summary>
     public sealed class ContactArm
     {
         public readonly int Upper;
@@ -23,9 +23,9 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// A part of the body. joint, to: the places its line's ends are fixed to; a, b: where, in those joints' own spaces. arm: 0
-    /// left, 1 right, -1 of neither. kind: whether it is pushed out of others: OBSTACLE is not; FOREARM runs from the elbow to
-    /// the wrist; HAND.
+    /// A part of the body. joint, to: the places of the joints that carry the ends of its line; a, b: where the ends are, in the
+    /// spaces of those joints. arm: 0 left, 1 right, -1 neither. kind: whether it is pushed out of others: an OBSTACLE is not; a
+    /// FOREARM, from the elbow to the wrist, and a HAND are.
     /// </summary>
     public sealed class BodyCapsule
     {
@@ -58,9 +58,9 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// What of a skeleton contacts need. joints: theirs, parents first. parents: for each the place of the nearest one above,
-    /// which has to be its parent; -1 for a root. places: names of joints to their places. arms: left, right; hands: the names of
-    /// their hands. contacts, guard: what is on.
+    /// The part of a skeleton that contacts need. joints: parents first. parents: for each joint, the place of its parent, -1 for
+    /// a root. places: joint name -&gt; place. arms: left, right; hands: the names of their hands. contacts, guard: whether each
+    /// is on.
     /// </summary>
     public sealed class ContactRig
     {
@@ -117,8 +117,8 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// A pose of a rig's joints: `local` rotations and `moved` translations in their parents' space, `turned` and `at` in the
-    /// character's, which `spread` works out.
+    /// A pose of a rig's joints: `local` rotations and `moved` translations are in the parents' space; `turned` and `at` are in
+    /// the character's space, and `spread` computes them.
     /// </summary>
     public sealed class ContactPose
     {
@@ -156,7 +156,7 @@ namespace Metagraph
         public const int Forearm = 1; // pushed out, from the elbow to the wrist
         public const int Hand = 2; // pushed out
 
-        /// <summary>Work out where all joints are.</summary>
+        /// <summary>Compute where all joints are.</summary>
         public static void Spread(ContactRig rig, ContactPose pose)
         {
             pose.Turned = new List<(double, double, double, double)>();
@@ -193,8 +193,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Bring hands to their goals, then hands and forearms out of the body; return whether anything moved. The joints' places
-        /// have to be known (`spread`).
+        /// Move hands to their goals, then push hands and forearms out of the body; return whether anything moved. Call `spread`
+        /// first.
         /// </summary>
         public static bool SolveContacts(ContactRig rig, ContactPose pose, List<HandGoal> goals)
         {
@@ -245,7 +245,9 @@ namespace Metagraph
             return rig.Arms[arm].Below.Any(below => place == below);
         }
 
-        /// <summary>Bring a hand to the weighted mean of its goals. wrist, hand: where and how it was without any.</summary>
+        /// <summary>
+        /// Move a hand to the weighted mean of its goals. wrist, hand: its position and rotation without goals.
+        /// </summary>
         private static void Hold(
             ContactRig rig,
             ContactPose pose,
@@ -321,7 +323,7 @@ namespace Metagraph
             );
         }
 
-        /// <summary>Return a hand's turn, as near to it as the wrist may be turned from how the hand was.</summary>
+        /// <summary>Return a hand's rotation, limited to what the wrist allows from the hand's earlier rotation.</summary>
         private static (double, double, double, double) WithinWrist(
             (double, double, double, double) hand,
             (double, double, double, double) turn
@@ -348,8 +350,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it. side_of: where a
-        /// straight arm bends to, in the upper arm's own space.
+        /// Move a wrist to a goal, or as near as the arm reaches, with the elbow on the side to which it is bent; rotate the
+        /// hand. side_of: the direction in which a straight arm bends, in the upper arm's own space.
         /// </summary>
         public static void Bring(
             ContactRig rig,
@@ -425,11 +427,11 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Push forearms and hands out of what they are inside of, by the least shift of the wrists; return whether any was.
-        /// held: how much each hand is kept somewhere, and so is not pushed.
+        /// Push forearms and hands out of the capsules they are inside, by the smallest shift of the wrists; return whether any
+        /// was inside. held: how much a contact holds each hand, which is then not pushed.
         ///
-        /// An arm that goes through something is pushed out to one side before its middle and to the other after: towards the
-        /// middle it is pushed ever less, so that it does not jump.
+        /// An arm that passes through a capsule is pushed to one side before the middle and to the other side after it. The push
+        /// gets weaker towards the middle, so that the arm does not jump.
         /// </summary>
         private static bool Guarded(ContactRig rig, ContactPose pose, List<double> held, double across)
         {
@@ -536,8 +538,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return by what a wrist has to move, so that its arm is out of all else, or nearer to that. whole: for each side how
-        /// much of that is to be done, which the first pass finds.
+        /// Return the shift of a wrist that brings its arm out of all other capsules, or closer to that. whole: for each side,
+        /// the share of the shift to apply, which the first pass finds.
         /// </summary>
         private static (double, double, double) Shift(
             ContactRig rig,
@@ -635,8 +637,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how far along the line that begins at `ends[i]` the shortest way from that at `ends[k]` ends, 0..1. Of lines
-        /// side by side, where it may end anywhere, the middle counts more the less they cross.
+        /// Return where on the line that begins at `ends[i]` the shortest way from the line at `ends[k]` ends, 0..1. For nearly
+        /// parallel lines, where it could end anywhere, the result moves towards the middle.
         /// </summary>
         private static double Along(List<(double, double, double)> ends, int i, int k)
         {
@@ -670,7 +672,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, and its length.
+        /// Return the shortest way from the line that begins at `ends[k]` to the one at `ends[i]`, and its length.
         /// </summary>
         public static (double, double, double, double) Apart(List<(double, double, double)> ends, int i, int k)
         {

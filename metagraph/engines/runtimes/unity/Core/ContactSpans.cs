@@ -24,12 +24,12 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// A hand kept where it is on the body.
+    /// A hand that stays at a place on the body.
     ///
-    /// hand: left or right. place: what of the hand touches: palm, fingertips, back, wrist. to: the name of the joint it stays
-    /// with. start, end: clip seconds. keys: one for a hand that stays, more, in order, for one that moves over the body.
-    /// ease_in, ease_out: seconds inside the span in which it comes and goes; none where the action begins, or ends, within the
-    /// span.
+    /// hand: left or right. place: the part of the hand that touches: palm, fingertips, back, wrist. to: the name of the joint it
+    /// stays with. start, end: clip seconds. keys: one for a hand that stays, more, in order, for one that moves over the body.
+    /// ease_in, ease_out: seconds inside the span in which the contact sets in and fades out; they do not apply if the action
+    /// begins, or ends, within the span.
     /// </summary>
     public sealed class ContactSpan
     {
@@ -68,11 +68,13 @@ namespace Metagraph
     {
         public static readonly List<string> Hands = new List<string> { "left", "right" };
         public static readonly List<string> Places = new List<string> { "palm", "fingertips", "back", "wrist" };
-        public const double Ease = 0.15; // seconds in which a hand comes to a contact, and leaves it, where nothing else is said
+        public const double Ease = 0.15; // seconds in which a hand comes to a contact, and leaves it, by default
         // seconds it takes at least where the contact lasts: what it touches may be far from its place
         public const double Settles = 0.3;
 
-        /// <summary>Return how much a hand is held at clip seconds, 0..1. first, last: what of the clip plays.</summary>
+        /// <summary>
+        /// Return how much a hand is held at a second of the clip, 0..1. first, last: the seconds of the clip that play.
+        /// </summary>
         public static double ContactWeight(ContactSpan span, double seconds, double first, double last)
         {
             if (seconds < span.Start || seconds > span.End)
@@ -94,7 +96,7 @@ namespace Metagraph
             return shown * shown * (3.0 - 2.0 * shown);
         }
 
-        /// <summary>Return where a hand is at clip seconds: between two keys on the straight line.</summary>
+        /// <summary>Return where a hand is at a second of the clip, interpolated linearly between two keys.</summary>
         public static ContactKey ContactKey(ContactSpan span, double seconds)
         {
             var before = span.Keys[0];

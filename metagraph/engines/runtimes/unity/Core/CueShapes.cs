@@ -6,7 +6,7 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue.
+    /// How an action would play: from `start` on, for `length` seconds, at least `shortest`; the other fields are those of a cue.
     /// </summary>
     public sealed class CueShape
     {
@@ -52,8 +52,8 @@ namespace Metagraph
         public const double Shared = 0.25; // seconds within which two strokes may be one
 
         /// <summary>
-        /// Return how an action would play for a request from `now` on, or as a step on the way to it. speed: a factor of its
-        /// own.
+        /// Return how an action would play for a request from `now` on, or as a step on the way to it. speed: a factor of the
+        /// action's own speed.
         /// </summary>
         public static CueShape ShapeOf(Graph project, GraphAction action, MetaRequest request, double now, double speed)
         {
@@ -119,15 +119,15 @@ namespace Metagraph
             return new CueShape(begin, entry, length, shortest, holdFrom, holdTo, hold, speed);
         }
 
-        /// <summary>Whether something that plays so is over by a limit.</summary>
+        /// <summary>Return whether something with this shape is over by a limit.</summary>
         public static bool FitsBefore(CueShape shape, double limit)
         {
             return shape.Start + shape.Shortest <= limit + Fits;
         }
 
         /// <summary>
-        /// Return by how many seconds an action that plays so comes late, at its stroke where one is asked for; less than 0
-        /// before its time.
+        /// Return by how many seconds an action with this shape comes late, measured at its stroke if the request has one; below
+        /// 0 if it comes early.
         /// </summary>
         public static double Lateness(Graph project, GraphAction action, MetaRequest request, CueShape shape)
         {
@@ -140,14 +140,15 @@ namespace Metagraph
             return shape.Start - request.Start;
         }
 
-        /// <summary>Return by how many seconds a request may come late, 0 where it does not say.</summary>
+        /// <summary>Return by how many seconds a request may come late, 0 if it does not say.</summary>
         public static double SlackOf(MetaRequest request)
         {
             return request.Late == null ? 0.0 : request.Late.Value;
         }
 
         /// <summary>
-        /// Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked for.
+        /// Return how many seconds a gesture takes if its retraction is cut and its hold is left out, unless the request has a
+        /// hold.
         /// </summary>
         public static double Hurried(Graph project, GraphAction action, CueShape shape)
         {
@@ -171,7 +172,7 @@ namespace Metagraph
             return Math.Min(shape.Length, left + Math.Max(action.Timing.BlendOut, Retraction));
         }
 
-        /// <summary>Whether two requests may be met by one stroke.</summary>
+        /// <summary>Return whether one stroke may meet two requests.</summary>
         public static bool MayShare(MetaRequest request, MetaRequest other)
         {
             if (request.Stroke == null || other.Stroke == null)
@@ -185,7 +186,7 @@ namespace Metagraph
                 && Math.Abs(request.Stroke.Value - other.Stroke.Value) <= Shared;
         }
 
-        /// <summary>Whether an action is what a request for any asks for.</summary>
+        /// <summary>Return whether an action fits a request that does not name one.</summary>
         public static bool Meets(GraphAction action, MetaRequest request)
         {
             return request.Tags.All(tag => action.Tags.Contains(tag))
@@ -194,7 +195,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what a meta action asks for; of a remainder, for as long as is left. A model says no length.
+        /// Return the request of a meta action; for a remainder, with the duration that is left. What a model wrote has no
+        /// duration.
         /// </summary>
         public static MetaRequest Remaining(MetaAction meta, double now)
         {

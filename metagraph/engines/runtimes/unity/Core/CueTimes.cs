@@ -88,8 +88,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how much of the way from where a cycle begins to where the one before it ended is still added at a time, 0..1,
-        /// so that a cue that repeats goes on without a jump.
+        /// Return the share, 0..1, of the offset between the end of one cycle and the beginning of the next that is still added
+        /// at a time, so that a cue that repeats does not jump.
         /// </summary>
         public static double SeamLeft(Cue cue, double time)
         {

@@ -6,12 +6,12 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// What keeps a performance from repeating itself and from fussing: how soon something is done again, how long a posture is
-    /// kept, how far apart acts are that stand out.
+    /// What keeps a performance from repeating itself and from being restless: how soon an action is done again, how long a
+    /// posture is kept, how far apart acts are that stand out.
     ///
-    /// Only what the Markov model writes is held back. What is asked for plays; of the actions that fit it, those that rested
-    /// long enough are likelier. `Settings.variety` multiplies every time here; 0 turns all of it off, as in Borer et al. The
-    /// times are ours, chosen by what an hour of the sample then does (`docs/researchers/behaviour.md`).
+    /// Only what the Markov model writes is held back. Requests always play; of the actions that fit a request, those that have
+    /// not played for long enough are likelier. `Settings.variety` multiplies every time here; 0 turns all of it off, as in Borer
+    /// et al. The times are ours, chosen by what an hour of the sample then does (`docs/researchers/behaviour.md`).
     /// </summary>
     public static class DirectorRules
     {
@@ -26,8 +26,8 @@ namespace Metagraph
         /// <summary>
         /// Return after how many seconds an action may be done again.
         ///
-        /// A beat that hardly shows takes 18 s, a gesture that stands out six minutes; fidgets, which nothing but time calls for,
-        /// 4 to 10 minutes. prominence: 0..1.
+        /// That is 18 s for a beat that hardly shows, six minutes for a gesture that stands out, and 4 to 10 minutes for fidgets,
+        /// which only time calls for. prominence: 0..1.
         /// </summary>
         public static double RepeatInterval(string kind, double prominence)
         {

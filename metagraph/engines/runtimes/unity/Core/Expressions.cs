@@ -6,8 +6,8 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// What a face shows beside lids and lips: weights of its channels. brow_up raises the brows' inner ends alone, brows the
-    /// whole of them. One is filled again for each time (`shown_face`, `answer`, `settle`).
+    /// The weights of a face's channels, without lids and lips. brow_up raises only the inner ends of the brows, brows the whole
+    /// of them. The same object is filled again for each time (`shown_face`, `answer`, `settle`).
     /// </summary>
     public sealed class FaceShown
     {
@@ -107,8 +107,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the lane of emphases filled from `cut` to `drawn` seconds: on as many stressed syllables as `accent_brows`
-        /// says, at the end of questions, and where a reaction begins.
+        /// Return the lane of emphases filled from `cut` to `drawn` seconds: on the share of stressed syllables that
+        /// `accent_brows` says, at the end of questions, and where a reaction begins.
         /// </summary>
         public static Lane EmphasesOn(
             LifeSettings life,
@@ -178,14 +178,14 @@ namespace Metagraph
             return before.Plus(times, rows);
         }
 
-        /// <summary>Whether something said is a question, by its last sign.</summary>
+        /// <summary>Return whether a speech is a question, by its last sign.</summary>
         public static bool Asks(Speech speech)
         {
             var text = speech.Text.Trim();
             return text != "" && Marks.Any(mark => PlainText.PartedLast(text, mark).Item3 == "");
         }
 
-        /// <summary>Fill in the face of a mood at a time, and of what was drawn.</summary>
+        /// <summary>Fill in the face at a time, from the mood and the drawn events.</summary>
         public static void ShownFace(FaceShown face, LifeSettings life, Lane swells, Lane emphases, Bearing bears, double seconds)
         {
             var calm = 1 - life.Stillness;
@@ -256,7 +256,7 @@ namespace Metagraph
             }
         }
 
-        /// <summary>Keep all within 0..1, and raise the cheeks with a smile.</summary>
+        /// <summary>Clamp all weights to 0..1, and raise the cheeks with a smile.</summary>
         public static void Settle(FaceShown face)
         {
             face.Smile = MoodRules.Within(face.Smile, 0.0, 1.0);

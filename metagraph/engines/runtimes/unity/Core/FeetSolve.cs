@@ -6,8 +6,8 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// Where a foot's joint should be, in the character's space. planted: how much it stands there, 0..1. lift: metres that a
-    /// step has it above that.
+    /// Where a foot's joint should be, in the character's space. planted: how firmly it stands there, 0..1. lift: height of a
+    /// step above that, metres.
     /// </summary>
     public sealed class FootGoal
     {
@@ -34,7 +34,9 @@ namespace Metagraph
         public const double High = 0.05; // metres in the air
         public const double Turning = 0.15; // metres that a turn of a radian counts as way
 
-        /// <summary>Return how far it is from one place of a foot to another, metres, a turn counted in.</summary>
+        /// <summary>
+        /// Return the distance between two places of a foot, in metres; a rotation counts as a distance, too.
+        /// </summary>
         public static double FootWay(FootGoal a, FootGoal b)
         {
             var found = a.Turn;
@@ -53,8 +55,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Bring feet to their goals, as much as those are planted; return whether anything moved. goals: left, right, or none.
-        /// strength: the dial. Joints' places need not be known.
+        /// Move feet to their goals, as far as these are planted; return whether anything moved. goals: left and right, or none.
+        /// strength: the user's dial. You need not call `spread` first.
         /// </summary>
         public static bool PlantFeet(WeightRig rig, ContactPose pose, List<FootGoal> goals, double strength)
         {

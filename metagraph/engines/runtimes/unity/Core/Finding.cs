@@ -5,11 +5,12 @@ using System.Linq;
 
 namespace Metagraph
 {
-    /// <summary>Actions and stances by what they are called.</summary>
+    /// <summary>Find actions and stances by id or name.</summary>
     public static class FindingRules
     {
         /// <summary>
-        /// Return the action of an id or, failing that, a name; of several of one name the likeliest. layer: None for any.
+        /// Return the action with an id or, failing that, with a name; of several with the same name, the likeliest. layer: None
+        /// for any.
         /// </summary>
         public static GraphAction ActionCalled(List<LayerGraph> graphs, string word, string layer)
         {
@@ -38,7 +39,7 @@ namespace Metagraph
             return best;
         }
 
-        /// <summary>Return the stance of an id or, failing that, a name, in the first layer that has one so called.</summary>
+        /// <summary>Return the stance with an id or, failing that, with a name, in the first layer that has one.</summary>
         public static Stance StanceCalled(List<LayerGraph> graphs, string word, string layer)
         {
             foreach (LayerGraph graph in graphs)

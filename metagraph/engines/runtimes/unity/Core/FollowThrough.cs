@@ -6,7 +6,7 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// What a clip's arms do.
+    /// How the arms of a clip move their mass.
     ///
     /// `clip` is its id. `rows` has a row for each tenth of a second, relative to the base pose: how far the left arm shifts the
     /// centre of mass of the whole body to the left, up and ahead, the same for the right arm, and how far each collar bone lags
@@ -50,7 +50,7 @@ namespace Metagraph
         ///
         /// `tracks` are by action. `hands` names the joints of the hands. `cue` is that of the arms' layer, if it has motion, and
         /// `place` the index of the rest in force, -1 for none; `body_cue` and `body_place` are the same for the body's layer. A
-        /// cue of the clip that the body's layer also shows brings its own hips and does not count.
+        /// cue whose clip the body's layer also shows moves the hips itself and does not count.
         /// </summary>
         public static List<double> ArmSway(
             Graph project,
@@ -107,7 +107,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what moves the body at a time: the eight numbers, and their change a second. `sways` has the rows of the last
+        /// Return the eight numbers that move the body at a time, and their change per second. `sways` has the rows of the last
         /// `KNOTS` times before it.
         /// </summary>
         public static List<double> Driven(List<List<double>> sways, double time)

@@ -21,7 +21,7 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// A sound of a text. shape: "" for a pause. size: characters' time. strength: of a syllable, 0 for what is none.
+    /// A sound of a text. shape: "" for a pause. size: characters' time. strength: of a syllable, 0 for anything else.
     /// </summary>
     public sealed class SpelledSound
     {
@@ -38,7 +38,7 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// Something said, as its letters tell: pieces in time, times and strengths (0..1) of its syllables.
+    /// Something said, timed by its letters: pieces in time, and times and strengths (0..1) of its syllables.
     /// </summary>
     public sealed class Spelled
     {
@@ -288,7 +288,7 @@ namespace Metagraph
             return new List<string>();
         }
 
-        /// <summary>Return each word and how many characters' time of pause follows it.</summary>
+        /// <summary>Return each word, and the pause after it, measured in characters.</summary>
         public static List<(string, double)> SplitWords(Alphabet alphabet, string text)
         {
             var out_ = new List<(string, double)>();
@@ -321,7 +321,7 @@ namespace Metagraph
         /// <summary>
         /// Return a word's sounds, in turn.
         ///
-        /// Content words are longer than the words between them; the first vowel bears the stress more often than not.
+        /// Content words are longer than the words between them. The first vowel usually has the stress.
         /// </summary>
         public static List<SpelledSound> Sounds(Alphabet alphabet, string word)
         {
@@ -350,7 +350,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean is a syllable.
+        /// Return how long a letter takes, measured in characters, by its code point: a Chinese, Japanese or Korean one is a
+        /// syllable.
         /// </summary>
         public static double MeasureLetter(int code)
         {
@@ -364,7 +365,7 @@ namespace Metagraph
             return 1.0;
         }
 
-        /// <summary>Return what a text says in `duration` seconds; nothing where no letter of it is known.</summary>
+        /// <summary>Return the sounds of a text that lasts `duration` seconds; none if it has no known letter.</summary>
         public static Spelled Spelled(Alphabet alphabet, string text, double duration)
         {
             var out_ = new Spelled();

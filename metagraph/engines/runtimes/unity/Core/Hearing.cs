@@ -6,9 +6,9 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// track: what lasts. fresh: what is asked of layers, with what goes on after a pause. withdrawn: ids of what was asked for
-    /// before and is not any more; stopped: those of them that were taken back and not asked for anew. touched: layers that asks
-    /// have to do with.
+    /// track: lasting items. fresh: requests of layers, with those that continue after a pause. withdrawn: ids of earlier
+    /// requests that no longer hold; stopped: those of them that were taken back, not replaced. touched: layers that the requests
+    /// affect.
     /// </summary>
     public sealed class Heard
     {
@@ -35,9 +35,9 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// What speeches become beside those that are said already. said: all that are new or changed. begun: ids of those of which
-    /// an earlier one is in them, changed; on: ids of which what is said already goes on. anew: ids under which something else
-    /// was said before. moods: what is asked for with them.
+    /// New speeches, combined with those that are being said. said: all that are new or changed. begun: ids of changed earlier
+    /// ones among them; on: ids of those that continue. `anew`: ids under which something else was said before. moods: the moods
+    /// requested with them.
     /// </summary>
     public sealed class AddedSpeeches
     {
@@ -63,7 +63,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what of a track stays beside these: moods of what goes on last as long as that, where no other is asked for.
+        /// Return the part of a track that stays: moods of speeches that continue last as long as these, unless another mood is
+        /// requested.
         /// </summary>
         public Track Leave(Track track)
         {
@@ -106,7 +107,7 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// A track and requests while asks steer what is said. anew: ids of the requests that are asked for anew; the rest is as in
+    /// A track and requests while asks steer speech. `anew`: ids of the requests that are made again; the other fields are as in
     /// `Heard`.
     /// </summary>
     public sealed class SteeredSpeech
@@ -135,13 +136,13 @@ namespace Metagraph
             Anew = anew ?? new HashSet<string>();
         }
 
-        /// <summary>Return the ids of all of it.</summary>
+        /// <summary>Return the ids of everything in it.</summary>
         public List<string> Idents()
         {
             return Requests.Select(r => r.Id).ToList().Concat(Track.Idents()).ToList();
         }
 
-        /// <summary>Break off an utterance at `stop`, and what was made for it at `now`.</summary>
+        /// <summary>Break off an utterance at `stop`, and the requests that belong to it at `now`.</summary>
         public void Interrupt(string ident, HashSet<string> made, double stop, double now, double soon)
         {
             if (UtterancesRules.GoesOn(Track.Speeches, ident, soon))
@@ -169,7 +170,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Hold an utterance, and what was made for it and has not had its moment; what has begun goes back.
+        /// Pause an utterance, and the requests that belong to it and whose moment has not come; those that have begun go back.
         /// </summary>
         public void Pause(string ident, HashSet<string> made, double stop, double now)
         {
@@ -203,7 +204,7 @@ namespace Metagraph
             Requests = kept;
         }
 
-        /// <summary>Go on with an utterance that is paused, and with what waits for it.</summary>
+        /// <summary>Resume a paused utterance, and the requests that wait for it.</summary>
         public void Resume(string ident, HashSet<string> made, double now, double soon)
         {
             var held = Track.Speeches.Where(s => s.Id == ident && UtterancesRules.IsPaused(s.Start)).FirstOrDefault();
@@ -230,7 +231,7 @@ namespace Metagraph
             Requests = kept;
         }
 
-        /// <summary>Return a request moved by so many seconds, to no earlier than `least`.</summary>
+        /// <summary>Return a request moved by a number of seconds, but not to before `least`.</summary>
         public MetaRequest MoveRequest(MetaRequest request, double by, double least)
         {
             var stroke = request.Stroke == null ? (double?)null : request.Stroke.Value + by;
@@ -263,7 +264,7 @@ namespace Metagraph
         public const double Listens = 2.0; // seconds for which the gaze stays with the partner who interrupts
 
         /// <summary>
-        /// Return the asks a request may have been made by: that of its own id, and those of which it would be a part.
+        /// Return the ids of the asks from which a request may come: its own id, and those of which it would be a part.
         /// </summary>
         public static List<string> Owners(string ident)
         {
@@ -286,8 +287,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what a request goes with when it is taken back: its `owners`, and what is said that a gesture was made for:
-        /// "answer" for "answer/2".
+        /// Return the ids with which a request is taken back: its `owners`, and the speech that a gesture belongs to: "answer"
+        /// for "answer/2".
         /// </summary>
         public static List<string> Makers(string ident)
         {
@@ -304,9 +305,9 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what asks do. requests, track: of the plan. meant: what is asked for, where speeches may overlap. now: what
-        /// begins before stays; soon: so for voices. turning: layers whose models perform one thing in one mode and another in
-        /// another.
+        /// Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it.
+        /// now: everything that begins earlier stays; soon: the same for voices. turning: layers whose models perform differently
+        /// in different modes.
         /// </summary>
         public static Heard Heard(
             List<MetaRequest> requests,
@@ -334,7 +335,7 @@ namespace Metagraph
             var words = AddSpeeches(meant, track, soon);
             var before = requests.Select(r => r.Id).ToList();
             before.AddRange(track.Idents());
-            // Who takes everything back still looks at whom it talks with.
+            // A client that takes everything back keeps the look at the user.
             var user = new HashSet<string>(track.Looks.Where(x => x.Start < now
                 && SpotsRules.IsSameSpot(x.To, SpotsRules.Named("user"))).Select(x => x.Id));
             var taken = new HashSet<string>();
@@ -358,7 +359,7 @@ namespace Metagraph
                     taken.Add(ident);
                 }
             }
-            // Where the models may change stances again means nothing where they always might.
+            // Leave to change stances again means nothing if the models always may.
             var staying = new HashSet<string>(track.Stays.Where(s => s.On).Select(s => s.Layer));
             foreach (StayFrom stay in more.Stays)
             {
@@ -388,7 +389,7 @@ namespace Metagraph
                 || meant.Steered.Count > 0
                 || track.Modes.Any(m => taken.Contains(m.Id))
                 || track.Speeches.Any(s => taken.Contains(s.Id));
-            if (turns) // who talks moves otherwise than who listens
+            if (turns) // talking and listening characters move differently
             {
                 foreach (string layer in turning)
                 {
@@ -433,7 +434,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what asks to say something make of a track: a line, something behind a line, or more of one.
+        /// Return the effect of asks to say something on a track: a new line, a line after another, or more of one.
         /// </summary>
         public static AddedSpeeches AddSpeeches(Meaning meant, Track track, double soon)
         {
@@ -513,8 +514,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what asks do with what is said: it is broken off, paused, gone on with or finished, in turn. requests: of the
-        /// plan before.
+        /// Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the plan before.
         /// </summary>
         private static Heard Steer(List<MetaRequest> requests, Heard heard, Meaning meant, double now, double soon)
         {

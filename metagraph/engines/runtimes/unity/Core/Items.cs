@@ -6,7 +6,7 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// Look at a point or a named point from `start` until `end`, or until the next look. strict: without averting.
+    /// Look at a point or a named point from `start` until `end`, or until the next look. strict: without looking away.
     /// </summary>
     public sealed class LookAt
     {
@@ -31,10 +31,10 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower. length:
-    /// seconds all of it would have taken, where something cut it short. timing: when its words and mouth shapes come, where that
-    /// was told. skip: seconds of it that were said before a pause. more: whether more of it may come, so that it is not over
-    /// when it falls silent. over: when it was said that none does, where it had fallen silent.
+    /// Something said. line: id of the project's line, None for `text` alone. priority: a higher one interrupts a lower one.
+    /// length: seconds that all of it would have taken, if it was cut short. timing: the times of its words and mouth shapes, if
+    /// known. skip: seconds of it that were said before a pause. more: whether more of it may come, so that it is not over when
+    /// it falls silent. over: when it was finished, if it had fallen silent before.
     /// </summary>
     public sealed class Speech
     {
@@ -110,7 +110,7 @@ namespace Metagraph
         }
     }
 
-    /// <summary>A blink asked for.</summary>
+    /// <summary>A requested blink.</summary>
     public sealed class BlinkAt
     {
         public readonly string Id;
@@ -124,7 +124,8 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// From `start` on the models change no stance of a layer (or, with `on` false, may again), until `end` or the next of these.
+    /// From `start` on, the models change no stance of a layer, or may do so again with `on` false, until `end` or the next item
+    /// of this kind.
     /// </summary>
     public sealed class StayFrom
     {
@@ -146,21 +147,23 @@ namespace Metagraph
 
     public static class ItemsRules
     {
-        /// <summary>Return the second that what is said counts from: before its start if it goes on after a pause.</summary>
+        /// <summary>
+        /// Return the second from which the times of a speech count: before its start if it continues after a pause.
+        /// </summary>
         public static double FindLineStart(Speech speech)
         {
             return speech.Start - speech.Skip;
         }
 
         /// <summary>
-        /// Return how long all of it takes, seconds, with what was said before a pause and what was cut off.
+        /// Return how many seconds all of a speech takes, with the part before a pause and the part that was cut off.
         /// </summary>
         public static double MeasureLine(Speech speech)
         {
             return speech.Length == null ? speech.End - FindLineStart(speech) : speech.Length.Value;
         }
 
-        /// <summary>Return the speech, ending no later than `at`; how long it would have been is remembered.</summary>
+        /// <summary>Return the speech, ending no later than `at`; it remembers its full length.</summary>
         public static Speech Cut(Speech speech, double at)
         {
             return speech.End <= at
@@ -181,8 +184,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, with
-        /// what is said behind it under its id; a lesser one is not said.
+        /// Return speeches, given in order, without overlaps: one of equal or higher importance cuts the running one, with its
+        /// later pieces; a less important one is dropped.
         /// </summary>
         public static List<Speech> Apart(List<Speech> speeches)
         {
@@ -229,9 +232,7 @@ namespace Metagraph
             return out_;
         }
 
-        /// <summary>
-        /// Return a text that comes while another one of its id is said: it is said after that. said: in order.
-        /// </summary>
+        /// <summary>Return a text moved to after another one of its id that is being said. said: in order.</summary>
         public static Speech Behind(List<Speech> said, Speech new_, double now)
         {
             if (new_.Timing != null || new_.Line != null || new_.Start > now)
@@ -265,8 +266,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it keeps its start
-        /// and what has been said of it. Only lines whose words or shapes were told with their times do.
+        /// Return a line as the continuation of the last one with the same id, if that has begun by `now` or begins with it: it
+        /// keeps the start and what has been said. Only lines whose words or shapes have times continue.
         /// </summary>
         public static Speech GoingOn(Speech old, Speech new_, double now)
         {
@@ -308,7 +309,7 @@ namespace Metagraph
             );
         }
 
-        /// <summary>Return a text with the times its letters tell, so that what comes of it later can be added.</summary>
+        /// <summary>Return a text with times estimated from its letters, so that later pieces can be added.</summary>
         public static Speech PaceSpeech(Alphabet alphabet, Speech new_)
         {
             var timing = LineTimingRules.PaceText(alphabet, new_.Text, null);
@@ -328,7 +329,7 @@ namespace Metagraph
             );
         }
 
-        /// <summary>Return a line with a text behind what was told of it. told, more: their words.</summary>
+        /// <summary>Return a line with a text after its known words. told, more: the words of both.</summary>
         private static Speech BehindWords(Speech old, LineTiming told, Speech new_, LineTiming more, double now)
         {
             var begin = FindLineStart(old);
@@ -355,7 +356,7 @@ namespace Metagraph
             );
         }
 
-        /// <summary>Whether two tracks' looks are the same; so for the others below.</summary>
+        /// <summary>Return whether the looks of two tracks are the same. The functions below compare other items.</summary>
         public static bool AlikeLooks(List<LookAt> one, List<LookAt> other)
         {
             return one.Count == other.Count

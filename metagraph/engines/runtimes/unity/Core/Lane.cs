@@ -6,8 +6,8 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// times: when events begin, ascending, seconds. rows: what each event is. first: number of the first event that is still
-    /// kept. width: how many numbers a row has.
+    /// times: when events begin, ascending, seconds. rows: the values of each event. first: number of the first event that is
+    /// still kept. width: how many numbers a row has.
     /// </summary>
     public sealed class Lane
     {
@@ -33,7 +33,7 @@ namespace Metagraph
             }
         }
 
-        /// <summary>Return the lane with only what begins before a time.</summary>
+        /// <summary>Return the lane with only the events that begin before a time.</summary>
         public Lane Until(double seconds)
         {
             var count = PlainLists.Left(Times, seconds);
@@ -54,9 +54,7 @@ namespace Metagraph
             return new Lane(Times.Concat(times).ToList(), Rows.Concat(rows).ToList(), First, Width);
         }
 
-        /// <summary>
-        /// Return the lane without what neither goes on at `seconds` nor comes later; `before`: how many more are kept.
-        /// </summary>
+        /// <summary>Return the lane without events that are over at `seconds`; `before`: how many of those to keep.</summary>
         public Lane Since(double seconds, int before = 1)
         {
             var gone = Math.Max(0, PlainLists.Right(Times, seconds) - 1 - before);

@@ -8,8 +8,8 @@ namespace Metagraph
     /// <summary>
     /// A layer placed in time, not yet performed.
     ///
-    /// able: whether the layer can perform at all. done: meta actions that were performed before. placed: those to be performed,
-    /// in order; what a model wrote among them is performed as its mode says. reports: what was told so far.
+    /// able: whether the layer can perform at all. done: meta actions that were performed before. placed: those to perform, in
+    /// order; those that a model wrote are performed as the mode says. reports: the reports so far.
     /// </summary>
     public sealed class LayerDraft
     {
@@ -46,9 +46,7 @@ namespace Metagraph
             Written = written;
         }
 
-        /// <summary>
-        /// Return the layer's plan, with those of its meta actions performed that are given; `reports` then tells all.
-        /// </summary>
+        /// <summary>Return the layer's plan with the given meta actions performed; `reports` is then complete.</summary>
         public LayerPlan Performed(List<MetaAction> metas, double end)
         {
             var cues = new List<Cue>();
@@ -71,12 +69,12 @@ namespace Metagraph
         public const double Window = 1.0; // seconds a request may use when it does not say how long
 
         /// <summary>
-        /// Return a layer's plan taken back to `now`, with what is asked for placed anew.
+        /// Return a layer's plan cut at `now`, with the requests placed again.
         ///
-        /// chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so
-        /// far. fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn; stopped: those
-        /// withdrawn, whose running action is left. stance: which the layer would begin in. moods: what it is in the mood for,
-        /// and when.
+        /// chain: the model that writes when there are no requests, or None. kinds: the kinds of actions that the layer has.
+        /// told: reports of the plan so far. fresh: new requests, of all layers. replaced: ids of requests that are replaced or
+        /// withdrawn; stopped: those withdrawn, whose running action is left. stance: the stance in which the layer would begin.
+        /// moods: the mood over time.
         /// </summary>
         public static LayerDraft Draft(
             Graph project,
@@ -126,7 +124,7 @@ namespace Metagraph
             }
             var future = new List<MetaAction>();
             var planned = new Dictionary<string, List<double>>(); // again: when those of a request start
-            var judged = new HashSet<string>(); // those whose lateness is told by what is performed
+            var judged = new HashSet<string>(); // those whose lateness is known once they are performed
             foreach (MetaAction meta in old.Metas)
             {
                 if (again.Contains(meta.Request.Id) || served.Contains(meta.Request.Id))
@@ -143,7 +141,7 @@ namespace Metagraph
                     planned[meta.Request.Id] = PlainMaps.GetOr(planned, meta.Request.Id, new List<double>()).Concat(new List<double> { meta.Start }).ToList();
                 }
             }
-            // What was told about time still holds; the rest will be told again by those that are planned again.
+            // Reports about time still hold; those that are planned again report the rest.
             var done = old.Metas.Where(meta => !again.Contains(meta.Request.Id)
                 && !PlainMaps.GetOr(planned, meta.Request.Id, new List<double>()).Contains(meta.Start)
                 && (playing.Contains(meta.Key) || meta.Start < now || served.Contains(meta.Request.Id))).ToList();
@@ -197,7 +195,9 @@ namespace Metagraph
             return new LayerDraft(layer, performer, true, done, placed, every, old.Past, cursor, written);
         }
 
-        /// <summary>Return a request that may begin as much earlier as its preparation takes longer in its mood.</summary>
+        /// <summary>
+        /// Return a request that may begin earlier, by the extra time that its preparation takes in its mood.
+        /// </summary>
         public static MetaRequest InTime(MetaRequest request, Moods moods)
         {
             if (request.Stroke == null)
@@ -234,7 +234,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return a request with the window it may use; where its stroke is judged, the moment it is wanted at.
+        /// Return a request as a meta action with the window it may use; if its stroke is judged, with the moment of the stroke.
         /// </summary>
         public static MetaAction MetaOf(MetaRequest request)
         {
@@ -251,8 +251,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the stance a layer begins in: as it did before, as asked, the graph's start, or the first that has a loop; ""
-        /// for none.
+        /// Return the stance in which a layer begins: that of the plan before, the given one, the graph's start, or the first
+        /// that has a loop; "" for none.
         /// </summary>
         private static string Begin(LayerGraph graph, LayerPlan old, string stance)
         {

@@ -5,7 +5,7 @@ using System.Linq;
 
 namespace Metagraph
 {
-    /// <summary>A word from `start` to `end`; None where only its start is told.</summary>
+    /// <summary>A word from `start` to `end`; `end` is None if only its start is known.</summary>
     public sealed class SpokenWord
     {
         public readonly string Text;
@@ -21,8 +21,8 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// A mouth shape from `at` until the next mark of a later time. viseme: its name in the set it is of, of `VISEMES` in a
-    /// `LineTiming`. weight: how fully it is made, 0..1.
+    /// A mouth shape from `at` until the next mark of a later time. viseme: its name in its set; in a `LineTiming`, one of
+    /// `VISEMES`. weight: how fully it is made, 0..1.
     /// </summary>
     public sealed class VisemeMark
     {
@@ -39,8 +39,8 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// A line's words and mouth shapes, each by time. later: seconds by which what is told later is said later, because something
-    /// came after its time. paced: whether nobody told the times, and they follow from the letters.
+    /// A line's words and mouth shapes, each by time. later: seconds by which later pieces are delayed, because one came after
+    /// its time. paced: whether the times are estimated from the letters.
     /// </summary>
     public sealed class LineTiming
     {
@@ -60,13 +60,12 @@ namespace Metagraph
 
     public static class LineTimingRules
     {
-        public const double Word = 0.15; // seconds a word takes of which only the start is told, if nothing comes before
-        public const double Letter = 0.07; // and for each of its letters
-        public const double Shape = 0.2; // seconds the last shape of a line stays
+        public const double Word = 0.15; // seconds that a word takes if only its start is known and nothing comes sooner
+        public const double Letter = 0.07; // and seconds for each of its letters
+        public const double Shape = 0.2; // seconds for which the last shape of a line stays
         public const double Farthest = 3600.0; // seconds of a line
-        // seconds before the last shape of a line, from which on a shape that is told later belongs to it
-        public const double Again = 0.1;
-        public const double Slack = 0.05; // seconds by which times may be past the end they are told with
+        public const double Again = 0.1; // a later piece belongs to a line from this many seconds before its last shape on
+        public const double Slack = 0.05; // seconds by which times may exceed the given end
         // What each viseme of a set shows of the mouth shapes, and how fully.
         public static readonly Dictionary<string, string> Oculus = new Dictionary<string, string> {
             { "sil", "sil" },
@@ -159,7 +158,7 @@ namespace Metagraph
             { "mouthSmileRight", 0.3 }
          };
 
-        /// <summary>Whether two lines' words and shapes come alike.</summary>
+        /// <summary>Return whether two lines have the same words and shapes at the same times.</summary>
         public static bool AlikeTimings(LineTiming one, LineTiming other)
         {
             if (one == null || other == null)
@@ -192,7 +191,7 @@ namespace Metagraph
             return name == "arkit" ? Arkit : Azure;
         }
 
-        /// <summary>Return the first set that has all of some visemes, "" where none has.</summary>
+        /// <summary>Return the first set that has all of the visemes, "" if none has.</summary>
         public static string SetOf(List<VisemeMark> marks)
         {
             foreach (string name in Sets)
@@ -206,10 +205,9 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what is wrong with a line's times, where, and what would be right; "" where nothing is.
+        /// Return what is wrong with a line's times, where, and what would be right; "" if nothing is wrong.
         ///
-        /// name: of the set the visemes are of, "" for what their names tell. duration: seconds of its sound, None where that is
-        /// not told.
+        /// name: of the visemes' set, "" to find it by their names. duration: seconds of its sound, None if unknown.
         /// </summary>
         public static string WrongIn(List<SpokenWord> words, List<VisemeMark> marks, string name, double? duration)
         {
@@ -308,9 +306,7 @@ namespace Metagraph
                 + " s from the line's start";
         }
 
-        /// <summary>
-        /// Return the timing that words and visemes in which nothing is wrong make. name: as for `wrong_in`.
-        /// </summary>
+        /// <summary>Return the timing of words and visemes that are valid. name: as for `wrong_in`.</summary>
         public static LineTiming TimingOf(Alphabet alphabet, List<SpokenWord> words, List<VisemeMark> marks, string name)
         {
             var table = Table(name == "" ? SetOf(marks) : name);
@@ -341,7 +337,7 @@ namespace Metagraph
             return new LineTiming(said.ToList(), shown.ToList());
         }
 
-        /// <summary>Return how long a text takes where more of it may come before or after, seconds.</summary>
+        /// <summary>Return how many seconds a text takes as a part of a longer text.</summary>
         public static double MeasureText(Alphabet alphabet, string text)
         {
             var out_ = 0.0;
@@ -355,8 +351,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the words of a text, one after the other. seconds: how long all of it takes, None for as long as its letters
-        /// tell.
+        /// Return the words of a text, one after the other. seconds: how long all of it takes, None to estimate it from the
+        /// letters.
         /// </summary>
         public static LineTiming PaceText(Alphabet alphabet, string text, double? seconds)
         {
@@ -385,8 +381,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the words that letters make whose times are told one by one: a blank parts words, and so does each letter that
-        /// is a syllable.
+        /// Return the words of letters that have a time each. Blanks separate words, and so does each letter that is a syllable.
         /// </summary>
         public static List<SpokenWord> JoinLetters(Alphabet alphabet, List<SpokenWord> letters)
         {
@@ -421,7 +416,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how long a line lasts, to whole rows of a mouth's track, so that what is added to it later moves nothing.
+        /// Return how long a line lasts, rounded to whole rows of the mouth's track, so that later additions move nothing.
         /// duration: of its sound, None for as long as its words and shapes need.
         /// </summary>
         public static double TimedSeconds(LineTiming timing, double? duration)
@@ -434,8 +429,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the mouth's pieces and the syllables of a line's words and shapes: shapes are the mouth's where any are told,
-        /// words those of gestures and blinks.
+        /// Return the mouth's pieces and the syllables of a line's words and shapes: the mouth follows the shapes if there are
+        /// any; gestures and blinks follow the words.
         /// </summary>
         public static Spelled TimedSounds(Alphabet alphabet, LineTiming timing)
         {
@@ -477,7 +472,7 @@ namespace Metagraph
             return shown;
         }
 
-        /// <summary>Return when each mark is over: several at one time are the mouth's together.</summary>
+        /// <summary>Return when each mark ends: marks at the same time show together.</summary>
         private static List<double> Ends(List<VisemeMark> marks)
         {
             var out_ = new List<double>();
@@ -496,8 +491,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return whether what is told of a line after its end is of the same line: it begins after the last word or shape that
-        /// was told, or tells all again with more behind it. Else somebody says something else under the same id.
+        /// Return whether a piece that comes after the end of a line belongs to the same line: it begins after the last known
+        /// word or shape, or repeats all with more behind it. Otherwise it is something else under the same id.
         /// </summary>
         public static bool TellsOn(LineTiming old, LineTiming new_)
         {
@@ -542,9 +537,9 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what is told of a line later, when it is said: a piece that counts its times from its own beginning comes after
-        /// what was told, and what comes after its time is said at once, and so is what follows it. said: seconds of the line
-        /// that are over.
+        /// Return a later piece of a line with the times at which it is said. A piece that counts from its own beginning follows
+        /// the earlier pieces. A piece that comes too late is said at once, and everything after it is delayed. said: seconds of
+        /// the line that are over.
         /// </summary>
         public static LineTiming PlaceTold(LineTiming old, LineTiming new_, double said)
         {
@@ -580,8 +575,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return whether what is told of a line is a piece of its own, which begins at 0: it lies where the line begins, and
-        /// does not tell that again.
+        /// Return whether a piece of a line counts its times from 0 again: it lies at the beginning of the line, but does not
+        /// repeat it.
         /// </summary>
         public static bool Restarts(LineTiming old, LineTiming new_, double said)
         {
@@ -616,7 +611,7 @@ namespace Metagraph
             return word.End == null ? word.Start : word.End.Value;
         }
 
-        /// <summary>Return when the last word or shape is over.</summary>
+        /// <summary>Return when the last word or shape ends.</summary>
         private static double EndOf(LineTiming timing)
         {
             var end = PlainNumbers.MaxOf(
@@ -631,8 +626,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the
-        /// new begins; of a word or a shape that has begun meanwhile the rest is said.
+        /// Return a line's timing with a later piece: the old timing stays up to `said` seconds, and up to the beginning of the
+        /// new piece. Of a word or shape that has begun meanwhile, the rest is said.
         /// </summary>
         public static LineTiming Extended(LineTiming old, LineTiming new_, double said)
         {

@@ -6,12 +6,12 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// The Markov model that performs when nobody asks for anything: a first-order chain over (limb, kind).
+    /// The Markov model that performs when there are no requests: a first-order chain over (limb, kind).
     ///
     /// The arms matrix is the paper's (Borer et al., figure 11), learned from annotated casual conversation. Body and head have
     /// no published matrix; theirs are ours, shaped on the paper's labels: the head nods and now and then changes its tilt, the
-    /// body mostly rests, shifts and fidgets. So are the shares of what is performed while one is said to idle, listen or talk:
-    /// hands gesture with one's own speech, the head nods at the other's.
+    /// body mostly rests, shifts and fidgets. The shares of what is performed in the modes idle, listening and talking are ours,
+    /// too: the hands gesture with the character's own speech, and the head nods at the other's.
     /// </summary>
     public static class MarkovRules
     {
@@ -26,11 +26,11 @@ namespace Metagraph
         /// left out.
         ///
         /// Rests are log-normal about the mean gap (`rest_length`): most are short, some long, as people's are. Windows are as
-        /// `length` says. kinds: what the graph has; states of other kinds are passed over, so that half-filled graphs perform
-        /// too.
+        /// `length` says. kinds: those that the graph has; states of other kinds are passed over, so that half-filled graphs
+        /// perform, too.
         ///
-        /// Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives
-        /// bit for bit what writing in one go does. A chain that cannot leave a row of zeros starts again from any state.
+        /// Each draw is keyed by the meta action's number. So a longer horizon only appends, and continuing from a cursor gives
+        /// bit for bit the same as writing in one go. After a row of zeros, the chain starts again from any state.
         /// </summary>
         public static (List<MetaAction>, Cursor) Write(
             Markov chain,
@@ -99,8 +99,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how likely each state is that may come after a state (-1: before the first), by its place; any that may be
-        /// where nothing leads on.
+        /// Return the probability of each state that may follow a state (-1: before the first), by its index; of all allowed
+        /// states if none may follow.
         /// </summary>
         private static Dictionary<string, double> Row(Markov chain, int state, List<double> openTo)
         {
@@ -120,8 +120,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Whether something the model wrote is performed while somebody idles, listens or talks (`Markov.modes`). What is left
-        /// out leaves the rest as it was, so that it does not matter when a mode became known.
+        /// Return whether something that the model wrote is performed in a mode (`Markov.modes`). What is left out does not
+        /// change the rest, so it does not matter when a mode became known.
         /// </summary>
         public static bool Performs(Markov chain, uint seed, MetaAction meta, string mode)
         {
@@ -136,7 +136,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths; else log-normal
+        /// Return how many seconds a meta action of a key lasts: uniform from 1 to 3 if the model has no lengths; else log-normal
         /// with the state's mean and standard deviation.
         /// </summary>
         public static double Length(Markov chain, int state, uint key)

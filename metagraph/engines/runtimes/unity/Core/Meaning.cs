@@ -6,8 +6,8 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// An ask with every field that any has; `do` says which count. line: id; said: that line, None where there is none such.
-    /// text: what is said, or a block of BML. timing: when its words and shapes come.
+    /// An ask with the fields of all kinds of asks; `do` says which of them count. line: id; said: that line, None if there is
+    /// none. text: the words, or a block of BML. timing: the times of its words and shapes.
     /// </summary>
     public sealed class PlainAsk
     {
@@ -115,8 +115,8 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// A line of dialogue. seconds: how long it is, None where nobody knows. asks: what it asks for while it is said, in seconds
-    /// from its start. valence, arousal, intensity: of the mood it is said in.
+    /// A line of dialogue. seconds: its length, None if unknown. asks: its own requests, in seconds from its start. valence,
+    /// arousal, intensity: of the mood it is said in.
     /// </summary>
     public sealed class SaidLine
     {
@@ -145,7 +145,7 @@ namespace Metagraph
         }
     }
 
-    /// <summary>A block of BML that is asked for: what it says becomes asks `&lt;id&gt;.1`, `&lt;id&gt;.2`, ...</summary>
+    /// <summary>A requested block of BML: its behaviours become asks `&lt;id&gt;.1`, `&lt;id&gt;.2`, ...</summary>
     public sealed class AskedBlock
     {
         public readonly string Id;
@@ -163,8 +163,7 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// What an ask does to what is said. do: "interrupt", "pause", "resume" or "finish". what: the id of what is said, "" for all
-    /// of it.
+    /// An ask that steers speech. do: "interrupt", "pause", "resume" or "finish". what: the id of the speech, "" for all speech.
     /// </summary>
     public sealed class SteeringAsk
     {
@@ -183,10 +182,10 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// What asks mean, so far. graphs: of the layers, in their order. withdrawn: ids taken back; every one where it holds "".
-    /// steered: what is done to what is said, in turn. unknown: what an ask names that is not there: "action", "stance" or
-    /// "line". Speeches may overlap. fixed: seconds before which no gesture can begin that a line asks for, though the line
-    /// itself may.
+    /// The meaning of asks, so far. graphs: of the layers, in their order. withdrawn: ids taken back; "" stands for all. steered:
+    /// the asks that steer speech, in order. unknown: the kind of thing that an ask names and that does not exist: "action",
+    /// "stance" or "line". Speeches may overlap. fixed: the earliest second at which a gesture of a line can begin; the line
+    /// itself may begin earlier.
     /// </summary>
     public sealed class Meaning
     {
@@ -247,7 +246,7 @@ namespace Metagraph
             Fixed = fixed_;
         }
 
-        /// <summary>Return what lasts.</summary>
+        /// <summary>Return the track of lasting items.</summary>
         public Track Track()
         {
             return new Track(
@@ -261,7 +260,7 @@ namespace Metagraph
             );
         }
 
-        /// <summary>Take what others mean, too.</summary>
+        /// <summary>Add the meaning of other asks.</summary>
         public void Take(Meaning other)
         {
             Requests.AddRange(other.Requests);
@@ -280,7 +279,7 @@ namespace Metagraph
             }
         }
 
-        /// <summary>Tell that an ask was not understood.</summary>
+        /// <summary>Report that an ask was not understood.</summary>
         public void Refuse(string ident, string why, string layer, double at)
         {
             Refused.Add(new Report(ident, "not-understood", why, layer == null ? "arms" : layer, at));
@@ -293,8 +292,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Add what an ask means; return why it can mean nothing, "" where it does. ident, at, priority: its own, or what the
-        /// line has made of them that asks for it. shift: seconds that line begins at, else 0.
+        /// Add the meaning of an ask; return why it has none, "" if it has one. ident, at, priority: its own, or as the line
+        /// changed them that it belongs to. shift: the second at which that line begins, else 0.
         /// </summary>
         public string Add(PlainAsk ask, string ident, double at, int priority, double shift)
         {
@@ -474,7 +473,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Nods are gestures tagged so; where none is, the likeliest of those called so, whatever stance it needs.
+        /// Nods are gestures with that tag; if there is none, the likeliest one with that name, whatever stance it needs.
         /// </summary>
         public string Head(PlainAsk ask, string ident, double at, int priority)
         {
@@ -519,7 +518,7 @@ namespace Metagraph
             return "";
         }
 
-        /// <summary>Something said: a line, with what it asks for meanwhile, or other words.</summary>
+        /// <summary>Say a line, with its own requests, or other words.</summary>
         public string Say(PlainAsk ask, string ident, double at, int priority)
         {
             var line = ask.Said;
@@ -604,8 +603,7 @@ namespace Metagraph
         public const double Forever = 1000000000.0; // seconds; a look that lasts until the next
 
         /// <summary>
-        /// Take what an ask means, or refuse all of it. now: when it begins where it does not say; soon: when it is said,
-        /// likewise.
+        /// Add the meaning of an ask, or refuse all of it. now: when it begins if it does not say; soon: the same for speech.
         /// </summary>
         public static void Understood(Meaning whole, PlainAsk ask, double now, double soon)
         {

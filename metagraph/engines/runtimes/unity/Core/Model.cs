@@ -10,11 +10,11 @@ namespace Metagraph
     ///
     /// `start` and `end` bound the part that plays; an `end` of None is the clip's end. `blend_in` and `blend_out` are the
     /// seconds of blending from and to the stance, inside that part. For a looping stance, `blend_in` is the overlap at the
-    /// loop's seam. `loop` repeats the part. From `earliest_exit` on the action may be left; None plays it through. `stroke` is
-    /// its most telling moment. `ready`, `stroke_end` and `relax` are the ends of a gesture's preparation, stroke and hold; its
-    /// retraction ends with the action. None takes the times found from the motion (`playback.timing.phases`). `repeat` is for
-    /// how many seconds a gesture or fidget repeats its part where nobody says how long, as near as a whole number of times
-    /// comes; 0 plays it once.
+    /// loop's seam. `loop` repeats the part. From `earliest_exit` on, the next action may start; None plays the action to its
+    /// end. `stroke` is its most expressive moment. `ready`, `stroke_end` and `relax` are the ends of a gesture's preparation,
+    /// stroke and hold; its retraction ends with the action. None takes the times found from the motion
+    /// (`playback.timing.phases`). `repeat` is the number of seconds for which a gesture or fidget repeats its part if no request
+    /// says how long; it plays the nearest whole number of times. 0 plays it once.
     /// </summary>
     public sealed class Timing
     {
@@ -73,11 +73,11 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// A first-order model over (limb, kind) that writes meta actions when there are no requests (Borer et al., 7.3).
+    /// A first-order model over (limb, kind). It writes meta actions when there are no requests (Borer et al., 7.3).
     ///
     /// `matrix` has rows of probabilities, each of which sums to 1. `gap` is the mean rest between two actions, in seconds.
-    /// `positive` and `negative` are the shares of gestures that ask for that tag, if tags are not part of the states. `tags` has
-    /// one text for each state, the tags it asks for with blanks between them; it is empty if tags are not part of the states.
+    /// `positive` and `negative` are the shares of gestures that request that tag, if tags are not part of the states. `tags` has
+    /// one text for each state: the tags it requests, with blanks between them; it is empty if tags are not part of the states.
     /// `lengths` has the mean and standard deviation of each state's actions, in seconds; it is empty if they are unknown.
     /// `modes` has one row for each mode, in the order of `words.MODES`: the shares, 0 to 1, of the written gestures, fidgets and
     /// transitions that are performed in that mode. Without the last two rows, thinking and reacting are as listening. It is
@@ -118,7 +118,7 @@ namespace Metagraph
             Modes = modes ?? new List<List<double>>();
         }
 
-        /// <summary>Return the tags that a state asks for, "" for none.</summary>
+        /// <summary>Return the tags that a state requests, "" for none.</summary>
         public string Tag(int state)
         {
             return Tags.Count > 0 ? Tags[state] : "";
@@ -129,11 +129,12 @@ namespace Metagraph
     /// The planner's constants.
     ///
     /// `alpha` says how quickly a used action becomes unlikely (4 in the paper). `seed` has 32 bits. With `never_twice`, an
-    /// action is not played twice in a row if there is another. `shortest` is the least number of seconds for which the remainder
-    /// of a cut meta action is kept. `wait` is how many seconds late a request may start. `memory` is the number of seconds after
-    /// which a use no longer counts, 0 for never (as in the paper). `rest` is the least number of seconds in the stance between
-    /// two actions of a layer. A running plan is not changed for the next `lookahead` seconds. `variety`, 0..4, multiplies the
-    /// times of `planning.director`, so how seldom actions repeat and stances change; 0 for as often as in the paper.
+    /// action is not played twice in a row if there is another. `shortest` is the minimum length, in seconds, of a remainder that
+    /// is kept when a meta action is cut. `wait` is how many seconds late a request may start. `memory` is the number of seconds
+    /// after which a use no longer counts, 0 for never (as in the paper). `rest` is the least number of seconds in the stance
+    /// between two actions of a layer. A running plan is not changed for the next `lookahead` seconds. `variety`, 0..4,
+    /// multiplies the times of `planning.director`, which decide how rarely actions repeat and stances change; 0 is as in the
+    /// paper.
     /// </summary>
     public sealed class Settings
     {

@@ -5,7 +5,7 @@ using System.Linq;
 
 namespace Metagraph
 {
-    /// <summary>valence, arousal: -1..1. intensity: 0..2, 1 as made.</summary>
+    /// <summary>valence, arousal: -1..1. intensity: 0..2, 1 is normal.</summary>
     public sealed class Mood
     {
         public readonly double Valence;
@@ -36,8 +36,8 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// A mood told from `start` on, until `end`; what it leaves out stays as it would be without it. Of two that last the later
-    /// began counts, and the other again when that is over.
+    /// A mood that holds from `start` until `end`; a field that it leaves out stays as it is without it. If two hold at once, the
+    /// one that began later counts. When it is over, the other counts again.
     /// </summary>
     public sealed class MoodFrom
     {
@@ -66,7 +66,7 @@ namespace Metagraph
         }
     }
 
-    /// <summary>The mood over time. base: where nothing is told; told: by start.</summary>
+    /// <summary>The mood over time. base: the mood where no other holds; told: the others, by start.</summary>
     public sealed class Moods
     {
         public readonly Mood Base;
@@ -79,7 +79,9 @@ namespace Metagraph
         }
     }
 
-    /// <summary>What a mood makes of the life layers' amounts and rates: factors, as those of a manner.</summary>
+    /// <summary>
+    /// The factors by which a mood changes the amounts and rates of the life layers, as those of a manner.
+    /// </summary>
     public sealed class LifeMood
     {
         public readonly double Breathing;
@@ -101,7 +103,7 @@ namespace Metagraph
     /// <summary>
     /// Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they hang,
     /// 0..1, or are open wide, below 0. smile, frown, brow_down, brow_up, brows: weights of the face, 0..1. thrust: how far the
-    /// body leans into it, 0..1, or draws back, below 0. tension: of shoulders, arms and hands, 0..1. closed: how close the arms
+    /// body leans forward, 0..1, or draws back, below 0. tension: of shoulders, arms and hands, 0..1. closed: how close the arms
     /// are kept, 0..1.
     /// </summary>
     public sealed class Bearing
@@ -179,7 +181,7 @@ namespace Metagraph
             { "tired", (-0.03, -0.8) }
          };
 
-        /// <summary>Return a mood with what is told of it changed, each within its range.</summary>
+        /// <summary>Return a mood with the given fields changed, each limited to its range.</summary>
         public static Mood Changed(Mood mood, double? valence, double? arousal, double? intensity)
         {
             return new Mood(
@@ -189,7 +191,7 @@ namespace Metagraph
             );
         }
 
-        /// <summary>Return the mood wanted at a time; posture and face take a while to follow (`shown`).</summary>
+        /// <summary>Return the mood that holds at a time; posture and face follow it slowly (`shown`).</summary>
         public static Mood MoodAt(Moods moods, double seconds)
         {
             var out_ = moods.Base;
@@ -208,8 +210,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return those that may still show at `seconds` or later: not what is over and has faded, nor what another that lasts
-        /// for ever has replaced.
+        /// Return the moods that may still show at `seconds` or later: without those that are over and have faded, and without
+        /// those that a mood without an end has replaced.
         /// </summary>
         public static List<MoodFrom> Lasting(List<MoodFrom> told, double seconds)
         {
@@ -266,8 +268,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the mood that shows at a time, on its way from those before. starts: when each begins, ascending; values:
-        /// valence, arousal, intensity of each. Before the first it is the first.
+        /// Return the mood that shows at a time, while it fades from the previous ones. starts: when each begins, ascending;
+        /// values: valence, arousal, intensity of each. Before the first it is the first.
         /// </summary>
         public static Mood Shown(List<double> starts, List<List<double>> values, double seconds)
         {
@@ -314,8 +316,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how lively a mood makes somebody, -1..1: as much as it arouses, more where it is pleasant, less where it is
-        /// unpleasant and does not excite.
+        /// Return how lively a mood is, -1..1: its arousal, plus some if it is pleasant, less if it is unpleasant and not
+        /// exciting.
         /// </summary>
         public static double Liveliness(Mood mood)
         {
@@ -360,7 +362,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how much longer clip seconds take at a speed than at their own, 0 at that, to the last digit.
+        /// Return how much longer clip seconds take at a speed than at their own speed, exactly 0 at that speed.
         /// </summary>
         public static double Drag(double seconds, double speed)
         {
@@ -368,15 +370,15 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of the turn as it
-        /// was made, a unit quaternion: turns of nearly half a circle, whose short way changes sides, stay as they are.
+        /// Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of the original
+        /// rotation, a unit quaternion. Rotations of nearly half a circle, whose short way changes sides, stay as they are.
         /// </summary>
         public static double TurnExtent(double extent, double real)
         {
             return 1 + (extent - 1) * Faded((Math.Abs(real) - 0.1) / 0.4);
         }
 
-        /// <summary>Whether an action was made for a mood: tagged with one that is near.</summary>
+        /// <summary>Return whether an action was made for a mood: whether it has the tag of a mood that is near.</summary>
         public static bool MadeFor(Mood mood, List<string> tags)
         {
             return tags.Any(tag => Moods.ContainsKey(tag) && Distance(mood, tag) <= Close);
@@ -394,9 +396,9 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how much likelier than usual an action is. vigour: how energetic it is beside others of its layer and kind,
-        /// -1..1. Up to 4 times for that, 4 for a tag of valence, 9 for a tag that names a mood; and as much rarer where they are
-        /// against it.
+        /// Return the factor of an action's likelihood. vigour: how energetic it is compared with others of its layer and kind,
+        /// -1..1. The factor is up to 4 for vigour, 4 for a tag of valence and 9 for a tag that names a mood, and the inverse if
+        /// they contradict the mood.
         /// </summary>
         public static double Favour(Mood mood, List<string> tags, double vigour)
         {
@@ -421,7 +423,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Whether something a model wrote is performed in a mood: the less lively, the less of it, down to 0.6.
+        /// Return whether something that a model wrote is performed in a mood: less of it in a less lively mood, down to 0.6.
         /// </summary>
         public static bool Stirs(Mood mood, uint seed, string key)
         {
@@ -430,8 +432,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what a mood makes of the life layers. Breath quickens and deepens with arousal, eyes dart and blink more; who
-        /// feels bad looks away more, who feels well less. The amounts are ours.
+        /// Return how a mood changes the life layers. With arousal, breath is quicker and deeper, and eyes dart and blink more.
+        /// In an unpleasant mood the character looks away more, in a pleasant one less. The amounts are ours.
         /// </summary>
         public static LifeMood LifeOf(Mood mood)
         {
@@ -448,8 +450,8 @@ namespace Metagraph
 
         /// <summary>
         /// Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009);
-        /// shoulders rise, fists close and the body goes ahead with arousal that is not joy; fear draws back (Coulson 2004); the
-        /// amounts are ours.
+        /// shoulders rise, fists close and the body leans forward with arousal that is not joy; fear draws back (Coulson 2004);
+        /// the amounts are ours.
         /// </summary>
         public static Bearing Bearing(Mood mood)
         {

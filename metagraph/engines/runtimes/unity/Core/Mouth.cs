@@ -58,8 +58,8 @@ namespace Metagraph
         public const double Accent = 2.0; // seconds round a stressed syllable without another: blinks come as often as people's
 
         /// <summary>
-        /// Return rows `[K][15]` of the shapes' weights, summing to 1; shut at both ends. Their times are evenly spaced from 0 to
-        /// the duration, at least 1 ms.
+        /// Return rows `[K][15]` of the shapes' weights, which sum to 1; the mouth is shut at both ends. Their times are evenly
+        /// spaced from 0 to the duration, at least 1 ms.
         /// </summary>
         public static List<List<double>> MouthTrack(List<MouthPiece> pieces, double duration)
         {
@@ -114,7 +114,7 @@ namespace Metagraph
             return out_;
         }
 
-        /// <summary>Return rows (how far a closure has come, how far it keeps the other one away), 0..1.</summary>
+        /// <summary>Return rows (how far a closure has progressed, how far it suppresses the other one), 0..1.</summary>
         private static List<(double, double)> Gates(List<MouthPiece> pieces, string viseme, int count, double step)
         {
             var out_ = PlainNumbers.Range(count).Select(row => (0.0, 0.0)).ToList();
@@ -138,7 +138,7 @@ namespace Metagraph
             return out_;
         }
 
-        /// <summary>Return a row with closures laid over it: as much of it is left as they leave open.</summary>
+        /// <summary>Return a row with the closures on top: they suppress the rest as far as they are closed.</summary>
         private static List<double> Closed(List<double> row, (double, double) lips, (double, double) teeth)
         {
             var most = Math.Max(lips.Item1, teeth.Item1);
@@ -160,8 +160,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Write shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they are now, and
-        /// leave the others what room they leave: smoothing must not part lips that meet.
+        /// Write the shapes without silence `[14]`, smoothed over three moments. Shapes that close the mouth keep their present
+        /// weights, and the others share what is left: smoothing must not part lips that meet.
         /// </summary>
         public static void Soften(List<double> out_, List<double> before, List<double> now, List<double> after)
         {
@@ -186,8 +186,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the times of stressed syllables: the first peak, then the strongest that have no stronger one within `ACCENT`
-        /// seconds. People blink and gesture on these, not on every syllable.
+        /// Return the times of stressed syllables: the first peak, then those with no stronger one within `ACCENT` seconds.
+        /// People blink and gesture on these, not on every syllable.
         /// </summary>
         public static List<double> AccentsOf(List<double> peaks, List<double> strengths)
         {

@@ -29,7 +29,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return where a gesture begins that skips its preparation: as late as it can blend in and be ready.
+        /// Return where a gesture begins if it skips its preparation: as late as it can blend in and be ready.
         /// </summary>
         public double Skip(double blendIn)
         {

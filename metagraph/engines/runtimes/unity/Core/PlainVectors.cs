@@ -6,8 +6,8 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// Vectors and turns as plain tuples, for what is worked out one pose at a time, the same in all languages. Vectors are x, y,
-    /// z; quaternions xyzw, of length 1.
+    /// Vectors and rotations as plain tuples, for code that computes one pose at a time, the same in all languages. Vectors are
+    /// x, y, z; quaternions xyzw, of length 1.
     /// </summary>
     public static class PlainVectorsRules
     {
@@ -72,7 +72,7 @@ namespace Metagraph
             return UnitTurn((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx, 1.0 + along));
         }
 
-        /// <summary>Return how long a vector is.</summary>
+        /// <summary>Return the length of a vector.</summary>
         public static double Length((double, double, double) v)
         {
             var found = v;
@@ -82,7 +82,7 @@ namespace Metagraph
             return Math.Sqrt(x * x + y * y + z * z);
         }
 
-        /// <summary>Return a vector of length 1 in a direction; of no length where there is none.</summary>
+        /// <summary>Return a vector of length 1 in the same direction; the zero vector stays as it is.</summary>
         public static (double, double, double) Unit((double, double, double) v)
         {
             return Scaled(v, 1.0 / Math.Max(Length(v), 1e-12));
@@ -100,7 +100,7 @@ namespace Metagraph
             return (x * k, y * k, z * k, w * k);
         }
 
-        /// <summary>Return the turn back.</summary>
+        /// <summary>Return the inverse rotation.</summary>
         public static (double, double, double, double) Back((double, double, double, double) q)
         {
             var found = q;

@@ -132,8 +132,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return both feet on their way, of which `passed` of its `seconds` have passed. `first` and `last` say where they are
-        /// when it begins and ends, which gives the order and size of the steps.
+        /// Return both feet during a step, after `passed` of its `seconds`. `first` and `last` are their places when it begins
+        /// and ends, which decide the order and size of the steps.
         /// </summary>
         private static List<FootGoal> Stepped(
             double height,

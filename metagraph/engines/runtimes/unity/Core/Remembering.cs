@@ -5,18 +5,18 @@ using System.Linq;
 
 namespace Metagraph
 {
-    /// <summary>What is remembered of what was played: how often an action was, lately, and until when.</summary>
+    /// <summary>What the planner remembers of played actions: how often each played lately, and until when.</summary>
     public static class RememberingRules
     {
         public const int Remembered = 32; // draws of a stance and kind that spacing can look back on
 
-        /// <summary>Return what draws of a stance and kind are remembered under.</summary>
+        /// <summary>Return the key under which draws of a stance and kind are remembered.</summary>
         public static string Node(string stance, string kind)
         {
             return kind + " " + stance;
         }
 
-        /// <summary>Whether so many other draws came after an action's last one.</summary>
+        /// <summary>Return whether at least this many other draws came after an action's last one.</summary>
         public static bool Rested(List<string> recent, string ident, int needed)
         {
             if (needed <= 0)
@@ -26,7 +26,7 @@ namespace Metagraph
             return needed <= Remembered && !PlainLists.Part(recent, Math.Max(0, recent.Count - needed)).Contains(ident);
         }
 
-        /// <summary>Note that a cue was played: how often its action was, lately, and until when.</summary>
+        /// <summary>Note that a cue was played: count its action, and note when it ended.</summary>
         public static void Remember(
             Cue cue,
             Dictionary<string, int> uses,

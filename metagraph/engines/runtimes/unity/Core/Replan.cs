@@ -8,14 +8,15 @@ namespace Metagraph
     /// <summary>
     /// Temporal replanning: meta actions that may clash become a meta plan that does not (Borer et al., section 6.1).
     ///
-    /// Greedy, by start time and then priority. The running action is never touched. Where two overlap, the more important one
-    /// keeps its time; the other is delayed past it, or cut where it begins, and then goes on with its remainder if it asked to.
+    /// Greedy, by start time and then priority. The running action is never touched. If two overlap, the more important one keeps
+    /// its time. The other is delayed past it, or cut where it begins; its remainder then plays afterwards if the request says
+    /// so.
     /// </summary>
     public static class ReplanRules
     {
         /// <summary>
-        /// Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those
-        /// that say how late they may be are judged where it shows how late they are.
+        /// Let new requests wait until `free` seconds, the end of the running action, and drop those that would wait too long.
+        /// Requests that say how late they may be are judged later, when their lateness is known.
         /// </summary>
         public static (List<MetaAction>, List<Report>) Delay(List<MetaAction> asked, double free, PlannerSettings settings)
         {
@@ -56,9 +57,9 @@ namespace Metagraph
         /// <summary>
         /// Return the meta plan, ascending and without overlaps, and what became of the rest.
         ///
-        /// What is asked for is placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions that do
-        /// not overlap come back as they are, so a plan that is placed again stays as it is. Of equal start and priority, the id
-        /// that sorts first goes first.
+        /// Requests are placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions that do not
+        /// overlap stay as they are, so a plan that is placed again does not change. If start and priority are equal, the id that
+        /// sorts first goes first.
         /// </summary>
         public static (List<MetaAction>, List<Report>) Replan(
             List<MetaAction> metas,
@@ -80,7 +81,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what is left of what a model wrote beside what is placed: the first stretch of each that is long enough.
+        /// Return the parts of written meta actions that fit beside the placed ones: the first stretch of each that is long
+        /// enough.
         /// </summary>
         private static (List<MetaAction>, List<Report>) Fitted(
             List<MetaAction> written,
@@ -141,7 +143,7 @@ namespace Metagraph
             return (out_, reports);
         }
 
-        /// <summary>Return what decides who is placed first.</summary>
+        /// <summary>Return the sort key that decides which is placed first.</summary>
         private static (double, int, string, int) Order(MetaAction meta)
         {
             return (meta.Start, -meta.Request.Priority, meta.Request.Id, meta.Part);
@@ -214,7 +216,7 @@ namespace Metagraph
             return (placed, reports);
         }
 
-        /// <summary>Return a meta action from `free` on.</summary>
+        /// <summary>Return a meta action that begins at `free` instead.</summary>
         private static MetaAction After(MetaAction meta, double free)
         {
             return new MetaAction(meta.Request, free, free + (meta.End - meta.Start), meta.Part, meta.Written);

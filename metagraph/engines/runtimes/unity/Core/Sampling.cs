@@ -5,7 +5,9 @@ using System.Linq;
 
 namespace Metagraph
 {
-    /// <summary>One action of a chain: who may play it, and for a transition on the way the stance it leads to.</summary>
+    /// <summary>
+    /// One action of a chain: the candidates for it and, for a transition on the way, the stance it leads to.
+    /// </summary>
     public sealed class SamplingStep
     {
         public readonly List<GraphAction> Candidates;
@@ -19,12 +21,12 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
+    /// One layer being planned, cue after cue. It changes while planning, and never leaves the planner.
     ///
     /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
-    /// meta actions whose chain of transitions plays already. served: keys of those that another's action serves, too. moods:
-    /// what it is in the mood for, and when. candidates: the actions of each `node` that may be drawn, as far as they were asked
-    /// for. acted: when the last action ended.
+    /// meta actions whose chain of transitions already plays. served: keys of those that the action of another one serves, too.
+    /// moods: the mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far. acted:
+    /// when the last action ended.
     /// </summary>
     public sealed class Performer
     {
@@ -82,7 +84,7 @@ namespace Metagraph
             Candidates = candidates ?? new Dictionary<string, List<GraphAction>>();
         }
 
-        /// <summary>Take a cue as played.</summary>
+        /// <summary>Note that a cue is played.</summary>
         public void Note(Cue cue, string then)
         {
             Cues.Add(cue);
@@ -92,7 +94,7 @@ namespace Metagraph
             RememberingRules.Remember(cue, Uses, Recent, Ended);
         }
 
-        /// <summary>When the next action may begin at the earliest.</summary>
+        /// <summary>The earliest time at which the next action may begin.</summary>
         public double Ready
         {
             get
@@ -113,7 +115,7 @@ namespace Metagraph
             return true;
         }
 
-        /// <summary>Realise what starts before `end` of a conflict-free meta plan, in order.</summary>
+        /// <summary>Realise in order those meta actions of a conflict-free meta plan that start before `end`.</summary>
         public void Perform(List<MetaAction> metas, double end)
         {
             foreach (Bound bound in BoundsRules.Bounds(metas))
@@ -233,8 +235,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return those that come least late, if that is not too late; of them those that leave most of what follows its time,
-        /// and serve most of it.
+        /// Return the candidates that come least late, if that is not too late; among them those that leave the following
+        /// requests the most time and serve the most of them.
         /// </summary>
         public List<GraphAction> Timely(Bound bound, List<GraphAction> fitting, double now)
         {
@@ -307,7 +309,7 @@ namespace Metagraph
             return timely;
         }
 
-        /// <summary>Return what a request that comes late waits for.</summary>
+        /// <summary>Return the reason why a request comes late.</summary>
         public string Cause(MetaRequest request, double now)
         {
             if (now <= request.Start + CueShapesRules.Fits)
@@ -322,8 +324,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return when something that is asked for has to begin at the latest, to be on time; never in the past, where nothing
-        /// meets it.
+        /// Return the latest time at which a requested action has to begin to be on time; never in the past.
         /// </summary>
         public double Latest(MetaRequest request)
         {
@@ -350,7 +351,7 @@ namespace Metagraph
             return request.Stroke.Value - least;
         }
 
-        /// <summary>Return when what follows an action could begin at the earliest.</summary>
+        /// <summary>Return the earliest time at which the next action could begin after this one.</summary>
         public double Over(GraphAction action, MetaRequest request, double now)
         {
             var shape = Shape(action, request, now, Mood(request, now));
@@ -358,8 +359,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return when an action that is to be played through is left nevertheless: early enough for the first of what follows
-        /// that can be in time then, late enough for its own stroke; infinity for never.
+        /// Return when an action that should play to its end is left early all the same: early enough for the first following
+        /// request that can then be in time, late enough for its own stroke; infinity for never.
         /// </summary>
         public double Until(GraphAction action, CueShape shape, Bound bound)
         {
@@ -381,8 +382,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Leave the running action early for the first of what is asked for that can be in time then, and where it was `stopped`
-        /// in any case. What a model wrote, or is less important, is left at once, the rest where its retraction begins.
+        /// Leave the running action early for the first request that can then be in time, or if it was `stopped`. An action that
+        /// a model wrote, or that is less important, is left at once; others are left where their retraction begins.
         /// </summary>
         public void MakeWay(MetaAction running, List<MetaAction> asked, double now, bool stopped)
         {
@@ -461,7 +462,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Leave the running action: it goes back to its stance from where it is. A transition ends where it leads.
+        /// Leave the running action: it returns to its stance from where it is. A transition ends in the stance it leads to.
         /// </summary>
         public void Retract(double now)
         {
@@ -493,7 +494,7 @@ namespace Metagraph
             Ended[cue.Action.Id] = end;
         }
 
-        /// <summary>Return when an action may be drawn again.</summary>
+        /// <summary>Return the time from which an action may be drawn again.</summary>
         public double Cooled(GraphAction action)
         {
             if (action.Cooldown > 0 && Ended.ContainsKey(action.Id))
@@ -504,8 +505,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return each action in turn: the transitions to get there, then the action itself; None if impossible or needless, or
-        /// where the model wrote it and nothing is rested enough.
+        /// Return each action in turn: the transitions to get there, then the action itself; None if it is impossible or not
+        /// needed, or if the model wrote it and every candidate played too recently.
         /// </summary>
         public List<SamplingStep> Steps(MetaAction meta, double now)
         {
@@ -653,8 +654,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the stances after the current one on the shortest way of transitions that can play, the goal last; none where
-        /// there is no way. Among equally short ones that whose transitions were placed first.
+        /// Return the stances after the current one on the shortest way of transitions that can play, the goal last; empty if
+        /// there is no way. Among equally short ways, the one whose transitions were placed first.
         /// </summary>
         public List<string> Chain(string goal)
         {
@@ -693,7 +694,7 @@ namespace Metagraph
             return way.AsEnumerable().Reverse().ToList().ToList();
         }
 
-        /// <summary>Whether an action leaves the layer in a stance that can rest.</summary>
+        /// <summary>Return whether an action leaves the layer in a stance that has a loop.</summary>
         public bool Arrives(GraphAction action)
         {
             var end = action.EndStance;
@@ -715,7 +716,7 @@ namespace Metagraph
             return CueShapesRules.ShapeOf(Project, action, request, now, Tempo(action, mood));
         }
 
-        /// <summary>Return the mood that something asked for is played in from `at` on, or at its stroke.</summary>
+        /// <summary>Return the mood in which a request is played from `at` on, or at its stroke.</summary>
         public Mood Mood(MetaRequest request, double at)
         {
             if (request == null)
@@ -730,15 +731,15 @@ namespace Metagraph
             return MoodRules.Changed(mood, request.Valence, request.Arousal, request.Intensity);
         }
 
-        /// <summary>Return how fast an action is played, 1 where it was made for the mood.</summary>
+        /// <summary>Return the speed of an action in a mood, 1 if it was made for the mood.</summary>
         public double Tempo(GraphAction action, Mood mood)
         {
             return (mood.Neutral || MoodRules.MadeFor(mood, action.Tags)) ? 1.0 : MoodRules.Tempo(mood);
         }
 
         /// <summary>
-        /// Return how large an action is played. Those that move feet or leave for another stance, touch something or were made
-        /// for the mood are played as they were made.
+        /// Return the extent of an action in a mood. Actions that move the feet, lead to another stance, touch something or were
+        /// made for the mood keep their extent.
         /// </summary>
         public double Extent(GraphAction action, Mood mood)
         {
@@ -752,8 +753,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood and variety favour, leaving out those used too
-        /// recently as long as any others are left.
+        /// Draw with p_k ~ likelihood_k / max(c_k, 1), times the factors of mood and variety. Actions used too recently are left
+        /// out as long as others are left.
         /// </summary>
         public GraphAction Draw(List<GraphAction> candidates, string key, double now, Mood mood)
         {
@@ -778,7 +779,7 @@ namespace Metagraph
             return left.Where(a => a.Id == chosen).First();
         }
 
-        /// <summary>Return how much likelier variety makes an action.</summary>
+        /// <summary>Return the factor by which variety changes an action's likelihood.</summary>
         public double Variety(GraphAction action, double now)
         {
             var variety = Project.Settings.Variety;
@@ -790,7 +791,7 @@ namespace Metagraph
             return DirectorRules.Freshness(now - Ended[action.Id], needed);
         }
 
-        /// <summary>Return those that may be done of one's own accord; see `director`.</summary>
+        /// <summary>Return the actions that the character may do by itself; see `director`.</summary>
         public List<GraphAction> Fresh(MetaAction meta, List<GraphAction> candidates, double now)
         {
             var variety = Project.Settings.Variety;
@@ -850,7 +851,7 @@ namespace Metagraph
             return latest;
         }
 
-        /// <summary>Return whether something that stands out was done since a time.</summary>
+        /// <summary>Return whether an act that stands out was done since a time.</summary>
         public bool Shown(double since)
         {
             foreach (var one in Ended)
@@ -871,7 +872,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so
+        /// Leave out actions that need more other actions before they play again. If nothing is left, all need one less, and so
         /// on.
         /// </summary>
         public List<GraphAction> Spaced(List<GraphAction> candidates)
@@ -919,7 +920,7 @@ namespace Metagraph
             return alpha * used;
         }
 
-        /// <summary>hops: whether it is a transition on the way to what is asked for.</summary>
+        /// <summary>hops: whether it is a transition on the way to the requested action.</summary>
         public Cue Cue(GraphAction action, CueShape shape, Bound bound, bool hops, string stance, Mood mood)
         {
             var length = shape.Length;
@@ -979,9 +980,9 @@ namespace Metagraph
             var loop = Loop(cue.Then, cue.Meta);
             if (loop != null)
             {
-                // The loop begins anew under the action, so that the action's last pose meets the loop's first.
-                // Where the action leaves joints alone the change shows, and takes its time: a transition all of
-                // its own.
+                // The loop begins again under the action, so that the action's last pose meets the loop's first.
+                // On joints that the action does not move, the change shows. It takes its time there, like a
+                // transition.
                 var partial = cue.Action.Limb != "both" || cue.Action.Joints.Count > 0 || cue.Action.JointWeights.Count > 0;
                 var begin = cue.Start + cue.BlendIn;
                 var until = cue.End - cue.BlendOut;
@@ -995,7 +996,7 @@ namespace Metagraph
             }
         }
 
-        /// <summary>Return one of a stance's loops, drawn by likelihood; None where it has none.</summary>
+        /// <summary>Return one of a stance's loops, drawn by likelihood; None if it has none.</summary>
         public GraphAction Loop(string stance, string key)
         {
             var loops = Graph.Of(stance, "stance");
@@ -1012,7 +1013,7 @@ namespace Metagraph
             return loops.Where(a => a.Id == chosen).First();
         }
 
-        /// <summary>Where a stance has several loops, change between them in long rests, at a loop's end.</summary>
+        /// <summary>Change between the loops of a stance in long rests, at the end of a loop.</summary>
         public void VaryRests(double end)
         {
             var out_ = new List<Rest>();
@@ -1059,11 +1060,11 @@ namespace Metagraph
 
     public static class SamplingRules
     {
-        public const double OnTime = 0.1; // seconds by which what is asked for may begin later than that, and is on time
+        public const double OnTime = 0.1; // seconds by which a request may begin later and still be on time
         // seconds of crossfade when a long rest changes from one loop of its stance to another
         public const double LoopFade = 0.6;
 
-        /// <summary>Return the performer that stands where cues have been played after a past.</summary>
+        /// <summary>Return the performer as it is after a past and the cues that played since.</summary>
         public static Performer PerformerAfter(
             Graph project,
             LayerGraph graph,

@@ -6,12 +6,13 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's rows stand in the order given here.
+    /// Everything that the life layers do by themselves from 0 to `end` seconds, in lanes. The columns of a lane's rows are
+    /// listed here.
     ///
-    /// modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length s, depth.
+    /// modes: index in MODES. moods: valence, arousal, intensity. targets: what the gaze looks at. breaths: length s, depth.
     /// aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up,
-    /// degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. swells, emphases: of the face (`expressions`). drawn:
-    /// seconds up to which the lanes are filled; the rest is what they were drawn from.
+    /// degrees. blinks: 0 spontaneous, 1 on a stressed syllable, 2 requested. swells, emphases: of the face (`expressions`).
+    /// drawn: seconds up to which the lanes are filled; the rest is what they were drawn from.
     /// </summary>
     public sealed class Schedule
     {
@@ -66,9 +67,7 @@ namespace Metagraph
             Seed = seed;
         }
 
-        /// <summary>
-        /// Return the schedule without what ended before `seconds`; what is drawn on from it stays as it would have been.
-        /// </summary>
+        /// <summary>Return the schedule without events that ended before `seconds`; later draws do not change.</summary>
         public Schedule Since(double seconds)
         {
             var breaths = Breaths.Since(seconds);
@@ -111,9 +110,9 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks change; manners:
-    /// what mode and mood make of the amounts from each on; strict: 1 where the look then is, else 0. phrases: when the character
-    /// begins to speak.
+    /// One extension: lanes filled from `cut` to `drawn` seconds. edges: when modes, moods or strict looks change; manners: the
+    /// factors of the amounts from each edge on; strict: 1 if the look is strict from there on, else 0. phrases: when the
+    /// character begins to speak.
     /// </summary>
     public sealed class LifeDraw
     {
@@ -165,7 +164,7 @@ namespace Metagraph
             Phrases = phrases ?? new List<double>();
         }
 
-        /// <summary>Lay modes, moods and strict looks out in one row of segments.</summary>
+        /// <summary>Combine modes, moods and strict looks into one list of segments.</summary>
         public void Begin(double cut)
         {
             Cut = cut;
@@ -199,19 +198,19 @@ namespace Metagraph
             }
         }
 
-        /// <summary>Return what keys the chances of an event: those of `chance_of`, 0..1, without the ends.</summary>
+        /// <summary>Return the key of an event's random numbers, for `chance_of`.</summary>
         public uint Key(string what, int number)
         {
             return ChoiceRules.Keyed(Seed, what, PlainText.Of(number));
         }
 
-        /// <summary>Return the place of the segment that a time is in.</summary>
+        /// <summary>Return the index of the segment that contains a time.</summary>
         public int PlaceAt(double seconds)
         {
             return Math.Max(0, PlainLists.Right(Edges, seconds) - 1);
         }
 
-        /// <summary>Return whether the character thinks at a time: then it looks up and aside, never down.</summary>
+        /// <summary>Return whether the character is thinking at a time: then it looks up and aside, never down.</summary>
         public bool Thinks(double seconds)
         {
             var mode = Math.Max(0, PlainLists.Right(Modes.Times, seconds) - 1);
@@ -219,8 +218,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each segment; infinity
-        /// where it is not before the end.
+        /// Return when `need` seconds have passed since `seconds` on a clock that runs at these rates, one for each segment;
+        /// infinity if that is after the end.
         /// </summary>
         public double After(double seconds, double need, List<double> rates)
         {
@@ -243,7 +242,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Each breath follows the one before; the first began before time 0, so that not everybody breathes alike.
+        /// Draw breaths, each after the previous one. The first began before time 0, so that characters do not breathe in step.
         /// </summary>
         public Lane Breaths(Lane lane)
         {
@@ -308,7 +307,7 @@ namespace Metagraph
             return wanted <= (1.0 + ScheduleRules.Stretch) * length ? wanted : length;
         }
 
-        /// <summary>The eyes' small jumps.</summary>
+        /// <summary>Draw the small jumps of the eyes.</summary>
         public Lane Saccades(Lane lane)
         {
             if (Life.SaccadeRate <= 0 || Calm <= 0)
@@ -346,7 +345,7 @@ namespace Metagraph
             }
         }
 
-        /// <summary>Looks away for a moment.</summary>
+        /// <summary>Draw short looks away.</summary>
         public Lane Aversions(Lane lane)
         {
             var life = Life;
@@ -396,7 +395,9 @@ namespace Metagraph
             }
         }
 
-        /// <summary>Blinks of themselves, on stressed syllables and asked for, whichever comes first.</summary>
+        /// <summary>
+        /// Draw blinks: spontaneous ones, those on stressed syllables and requested ones, in the order in which they come.
+        /// </summary>
         public Lane Blinks(Lane lane)
         {
             var life = Life;
@@ -526,9 +527,9 @@ namespace Metagraph
         public const double Stretch = 0.5;
 
         /// <summary>
-        /// Return the schedule to `end` seconds. What `before` holds that begins before `now` stays exactly as it was.
+        /// Return the schedule to `end` seconds. Events of `before` that begin before `now` stay exactly as they were.
         ///
-        /// What it holds for later is kept, too, where nothing it was drawn from has changed.
+        /// Its later events stay, too, if nothing that they were drawn from has changed.
         /// </summary>
         public static Schedule Schedule(
             LifeSettings life,
@@ -621,7 +622,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return "" where nothing a schedule was drawn from has changed, "places" where only those have, else "all".
+        /// Return "" if nothing that a schedule was drawn from has changed, "places" if only places have, else "all".
         /// </summary>
         private static string Change(Schedule before, LifeSettings life, Track track, Voices voices, uint seed)
         {
@@ -640,7 +641,9 @@ namespace Metagraph
             return before.Track.DrawsLike(track) ? "places" : "all";
         }
 
-        /// <summary>Return what extends a schedule from `cut` to `drawn` seconds, with modes and looks in place.</summary>
+        /// <summary>
+        /// Return the draw that extends a schedule from `cut` to `drawn` seconds, with modes and looks filled in.
+        /// </summary>
         private static LifeDraw Draw(
             LifeSettings life,
             Track track,

@@ -6,13 +6,13 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// What of an utterance was spoken until a moment, for the history that a language model goes on from.
+    /// The part of an utterance that was spoken until a moment, for the history from which a language model continues.
     /// </summary>
     public static class SpokenSoFarRules
     {
         /// <summary>
-        /// Return what of an utterance was spoken until `seconds`, up to the word that was begun, and that word; "" where nothing
-        /// was. said: everything, by start.
+        /// Return the part of an utterance that was spoken until `seconds`, up to the word that was begun, and that word; "" if
+        /// nothing was spoken. said: all speeches, by start.
         /// </summary>
         public static (string, string) SpokenUntil(Alphabet alphabet, List<Speech> said, string ident, double seconds)
         {
@@ -40,7 +40,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the pieces of the utterance of an id that was said last; one that goes on after a pause is one.
+        /// Return the pieces of the last utterance with an id; one that continues after a pause is one utterance.
         /// </summary>
         private static List<Speech> Pieces(List<Speech> said, string ident, double seconds)
         {
@@ -64,7 +64,7 @@ namespace Metagraph
             return out_;
         }
 
-        /// <summary>Return what of one piece was spoken in its first `seconds`, and the last word of that.</summary>
+        /// <summary>Return the part of one piece that was spoken in its first `seconds`, and its last word.</summary>
         private static (string, string) SpokenOf(Alphabet alphabet, Speech piece, double seconds)
         {
             var letters = alphabet.Letters(piece.Text);
@@ -118,13 +118,13 @@ namespace Metagraph
             );
         }
 
-        /// <summary>Whether a letter behind a word is no mark of it.</summary>
+        /// <summary>Return whether a letter after a word is not a mark that belongs to it.</summary>
         private static bool Parts(Alphabet alphabet, string letter)
         {
             return alphabet.Stripped(letter) == "" || WordGesturesRules.Telling(alphabet, new List<string> { letter });
         }
 
-        /// <summary>Return the place behind a word in a text, from `first` on; -1 where it is not there.</summary>
+        /// <summary>Return the index after a word in a text, searching from `first`; -1 if it is not there.</summary>
         private static int EndOfLetters(List<string> letters, List<string> word, int first)
         {
             for (int start = first; start < letters.Count - word.Count + 1; start++)

@@ -6,8 +6,8 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// A voice that is heard. rate: samples a second, 8000 or more. seconds: up to which it was heard. The rest is what it
-    /// remembers. missed: seconds of the line in which no sound came.
+    /// The state of a voice that is analysed. rate: samples a second, 8000 or more. seconds: how much of it was heard. missed:
+    /// seconds of the line in which no sound came. The other fields are memory.
     /// </summary>
     public sealed class StreamedVoice
     {
@@ -60,7 +60,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Take in the next samples, -1..1; return the shapes that begin in them: visemes of the set "oculus", at seconds from
+        /// Analyse the next samples, -1..1; return the shapes that begin in them: visemes of the set "oculus", at seconds from
         /// the line's start.
         /// </summary>
         public List<VisemeMark> Hear(List<double> samples)
@@ -94,7 +94,7 @@ namespace Metagraph
             return out_;
         }
 
-        /// <summary>Go on where the line is, when its sound came too late. said: seconds of the line that are over.</summary>
+        /// <summary>Skip to where the line is if its sound came too late. said: seconds of the line that are over.</summary>
         public void Follow(double said)
         {
             if (Seconds < said - StreamedVoiceRules.Behind)
@@ -124,7 +124,7 @@ namespace Metagraph
             }
         }
 
-        /// <summary>Tell what the last moment is; return whether a shape begins or changes, at `told`.</summary>
+        /// <summary>Classify the last moment; return whether a shape begins or changes, at `told`.</summary>
         public bool Judge(int size)
         {
             var now = ((double)(Judged * size) / Rate);
@@ -162,7 +162,7 @@ namespace Metagraph
             return false;
         }
 
-        /// <summary>Return the shape of a moment. levels: dB of the bands, less the highest at low rates.</summary>
+        /// <summary>Return the shape of a moment. levels: dB of the bands, without the highest band at low rates.</summary>
         public string ShapeOf(List<double> levels)
         {
             var low = levels[0];
@@ -212,10 +212,9 @@ namespace Metagraph
         // dB of the third band beside the second: the tongue is in front, of half open mouths
         public static readonly double FrontHalf = -6.0;
         public static readonly double Front = -8.5; // and of others
-        public const double Least = 0.03; // seconds: what is shorter is no shape
-        public const double Step = 0.06; // seconds after which a shape that grows or wanes
-        public const double Grows = 0.15; // by so much is told again
-        // seconds by which a piece may come after its time; one that is later is heard as it comes
-        public const double Behind = 0.25;
+        public const double Least = 0.03; // seconds: anything shorter is not a shape
+        public const double Step = 0.06; // seconds after which a shape that gets stronger or weaker
+        public const double Grows = 0.15; // by this much is reported again
+        public const double Behind = 0.25; // seconds by which a piece may come late; a later one is heard when it comes
     }
 }

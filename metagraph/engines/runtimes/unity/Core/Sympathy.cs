@@ -5,7 +5,7 @@ using System.Linq;
 
 namespace Metagraph
 {
-    /// <summary>A laugh of the other's, seconds.</summary>
+    /// <summary>A laugh of the other character, in seconds.</summary>
     public sealed class Laugh
     {
         public readonly double Start;
@@ -31,7 +31,8 @@ namespace Metagraph
         public const double LaughArousal = 0.45;
 
         /// <summary>
-        /// Return the mood of who sees another's: `share`, 0..1, of the way there; its own before a neutral one.
+        /// Return the mood of a character that sees another's: `share`, 0..1, of the way to it; its own mood if the other's is
+        /// neutral.
         /// </summary>
         public static Mood TakenUp(Mood own, Mood other, double share)
         {
@@ -48,8 +49,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what is told of the mood of who sees the other's from 0 to `end` seconds, by start. own: its mood without; who:
-        /// a key of the other, which draws how late each is taken up.
+        /// Return the moods of a character that sees the other's, from 0 to `end` seconds, by start. own: its mood without the
+        /// other; who: the key of the other, from which each delay is drawn.
         /// </summary>
         public static List<MoodFrom> MoodsTakenUp(Moods own, Moods other, double end, double share, uint seed, string who)
         {
@@ -82,7 +83,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what is told of the mood of who laughs along with `share`, 0..1, of the other's laughs, by start.
+        /// Return the moods of a character that laughs along with `share`, 0..1, of the other's laughs, by start.
         /// </summary>
         public static List<MoodFrom> LaughsAlong(Moods own, List<Laugh> laughs, double share, uint seed, string who)
         {

@@ -5,7 +5,7 @@ using System.Linq;
 
 namespace Metagraph
 {
-    /// <summary>All of it, each by start. Speeches do not overlap.</summary>
+    /// <summary>All lasting requests, each kind sorted by start. Speeches do not overlap.</summary>
     public sealed class Track
     {
         public readonly List<LookAt> Looks;
@@ -35,7 +35,7 @@ namespace Metagraph
             Moods = moods ?? new List<MoodFrom>();
         }
 
-        /// <summary>Return the ids of all of it.</summary>
+        /// <summary>Return the ids of all items.</summary>
         public List<string> Idents()
         {
             var out_ = Looks.Select(x => x.Id).ToList();
@@ -57,7 +57,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the mode that was asked for at a time, or talking while something is said; None where neither tells.
+        /// Return the mode requested at a time, or talking while something is said; None if neither applies.
         /// </summary>
         public string ToldMode(double seconds)
         {
@@ -71,7 +71,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the track without items of these ids that begin at `now` or later; what has begun ends now, if it can.
+        /// Return the track without items of these ids that begin at `now` or later; those that have begun end now, if they can.
         /// </summary>
         public Track Without(HashSet<string> idents, double now = -double.PositiveInfinity)
         {
@@ -98,7 +98,7 @@ namespace Metagraph
             );
         }
 
-        /// <summary>Return the track with those of another, whose speeches may overlap each other's.</summary>
+        /// <summary>Return the track with the items of another one, whose speeches may overlap.</summary>
         public Track Joined(Track more)
         {
             if (more.Idents().Count == 0)
@@ -152,7 +152,7 @@ namespace Metagraph
             );
         }
 
-        /// <summary>Return the track without what no time from `seconds` on needs.</summary>
+        /// <summary>Return the track without items that are not needed from `seconds` on.</summary>
         public Track Since(double seconds)
         {
             // Those that no later one has replaced; also what is over: it tells since when what shows has shown.
@@ -190,13 +190,15 @@ namespace Metagraph
             );
         }
 
-        /// <summary>Return the last of an id that is said.</summary>
+        /// <summary>Return the last speech with an id.</summary>
         public Speech LastSpeech(string ident)
         {
             return Speeches.AsEnumerable().Reverse().ToList().Where(s => s.Id == ident).FirstOrDefault();
         }
 
-        /// <summary>Whether all is the same that chance depends on: where things are, and what stays, is not.</summary>
+        /// <summary>
+        /// Return whether everything is the same that random draws depend on. Places and stays are not part of it.
+        /// </summary>
         public bool DrawsLike(Track other)
         {
             if (!ItemsRules.AlikeLooks(Looks, other.Looks) || !ItemsRules.AlikeSpeeches(Speeches, other.Speeches))
@@ -210,7 +212,7 @@ namespace Metagraph
             return ItemsRules.AlikeModes(Modes, other.Modes) && ItemsRules.AlikeBlinks(Blinks, other.Blinks);
         }
 
-        /// <summary>Whether all is the same.</summary>
+        /// <summary>Return whether everything is the same.</summary>
         public bool Like(Track other)
         {
             if (!ItemsRules.AlikePlaces(Places, other.Places) || !ItemsRules.AlikeStays(Stays, other.Stays))

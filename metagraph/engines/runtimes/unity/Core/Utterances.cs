@@ -6,10 +6,10 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// What is done to something said: it is broken off, paused, gone on with, finished. An utterance is all that is said under
-    /// one id, piece by piece, until it is over. Times are seconds.
+    /// Break off, pause, resume and finish utterances. An utterance is everything that is said under one id, piece by piece,
+    /// until it is over. Times are seconds.
     ///
-    /// What is paused lies in a time that never comes (`PAUSED`), each utterance in a place of its own there.
+    /// A paused utterance is moved to a time that never comes (`PAUSED`), each to a slot of its own.
     /// </summary>
     public static class UtterancesRules
     {
@@ -19,21 +19,22 @@ namespace Metagraph
         public const double Together = 0.001; // seconds between two pieces of one utterance, at most
 
         /// <summary>
-        /// Return when a voice can begin: sooner than gestures, which blend. Nothing has been shown at the very beginning.
+        /// Return when a voice can begin: sooner than gestures, which blend. At the very beginning it can begin at once, because
+        /// nothing has been shown.
         /// </summary>
         public static double FindSoon(double now, double lookahead)
         {
             return now > 0 ? now + Math.Min(lookahead, Voice) : 0.0;
         }
 
-        /// <summary>Return whether what begins then is paused.</summary>
+        /// <summary>Return whether an item with this start is paused.</summary>
         public static bool IsPaused(double start)
         {
             return start >= Paused;
         }
 
         /// <summary>
-        /// Return whether a piece can be added to though it does not run: more was promised, or it is paused.
+        /// Return whether more can be added to a piece that is not being said: more was announced, or it is paused.
         /// </summary>
         public static bool TakesMore(Speech speech)
         {
@@ -41,7 +42,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return whether an utterance is not over at `now`: it is said, comes, is paused, or has more to come.
+        /// Return whether an utterance is not over at `now`: it is being said, will be said, is paused, or expects more.
         /// </summary>
         public static bool GoesOn(List<Speech> speeches, string ident, double now)
         {
@@ -65,8 +66,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon`; where its
-        /// sounds are not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
+        /// Return when the voice of an utterance stops: at the end of the current sound, at `soon` at the latest; at once if its
+        /// sounds are unknown or it is in a pause; at its start if it has not begun. now: when gestures can stop.
         /// </summary>
         public static double FindStop(Alphabet alphabet, Track track, string ident, double soon, double now)
         {
@@ -92,7 +93,7 @@ namespace Metagraph
                 : first;
         }
 
-        /// <summary>Return a time among those that never come in which nothing lies.</summary>
+        /// <summary>Return a free slot among the times that never come.</summary>
         public static double FindSlot(Track track)
         {
             return PlainNumbers.MaxOf(
@@ -101,7 +102,7 @@ namespace Metagraph
             );
         }
 
-        /// <summary>Return the track with an utterance over at `stop`: what comes of it is not said.</summary>
+        /// <summary>Return the track with an utterance ended at `stop`: its later pieces are not said.</summary>
         public static Track BreakOff(Track track, string ident, double stop)
         {
             var speeches = new List<Speech>();
@@ -119,14 +120,14 @@ namespace Metagraph
             return Closed(track, speeches, ident, stop, true);
         }
 
-        /// <summary>Return the track with an utterance that is over when all that is known of it was said.</summary>
+        /// <summary>Return the track with an utterance that is over once all its known pieces are said.</summary>
         public static Track FinishSpeech(Track track, string ident, double soon)
         {
             return Closed(track, track.Speeches.ToList(), ident, soon, false);
         }
 
         /// <summary>
-        /// Return the track with these speeches, of which an utterance has no more to come. cuts: whether it was broken off.
+        /// Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it was broken off.
         /// </summary>
         private static Track Closed(Track track, List<Speech> speeches, string ident, double now, bool cuts)
         {
@@ -168,8 +169,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the track with an utterance that is held from `stop` on, in `slot` (`find_slot`). made: ids of what was asked
-        /// for it; it waits as long, if it has not begun.
+        /// Return the track with an utterance paused from `stop` on, in `slot` (`find_slot`). made: ids of requests that belong
+        /// to it; they wait, too, if they have not begun.
         /// </summary>
         public static Track Pause(Track track, string ident, HashSet<string> made, double stop, double slot)
         {
@@ -253,7 +254,7 @@ namespace Metagraph
             return Moved(left, held, made, stop, Paused, by);
         }
 
-        /// <summary>Return the track with an utterance that goes on at `soon`. made: as for `pause`.</summary>
+        /// <summary>Return the track with an utterance that continues at `soon`. made: as for `pause`.</summary>
         public static Track Resume(Track track, string ident, HashSet<string> made, double soon)
         {
             var held = track.Speeches.Where(s => s.Id == ident && s.Start >= Paused).ToList();
@@ -296,7 +297,7 @@ namespace Metagraph
 
         /// <summary>
         /// Return the track with more speeches, and with the looks and moods of `made` that begin from `low` to before `high`
-        /// moved by so many seconds.
+        /// moved by a number of seconds.
         /// </summary>
         private static Track Moved(Track track, List<Speech> speeches, HashSet<string> made, double low, double high, double by)
         {
@@ -341,8 +342,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return why an utterance is over at the end of a piece of it: "finished", "interrupted" or "replaced"; "" where it is
-        /// not over there.
+        /// Return why an utterance is over at the end of a piece: "finished", "interrupted" or "replaced"; "" if it is not over
+        /// there.
         /// </summary>
         public static string ExplainEnd(List<Speech> speeches, Speech speech)
         {
@@ -358,7 +359,7 @@ namespace Metagraph
             return (coming == null || coming.Start > speech.End + Together) ? "interrupted" : "replaced";
         }
 
-        /// <summary>Return whether a later piece of the same id goes on with what an earlier one says.</summary>
+        /// <summary>Return whether a later piece of the same id continues an earlier one.</summary>
         public static bool IsSameUtterance(Speech one, Speech other)
         {
             if (one.More || (other.Skip > 0 && one.Length != null && one.Over == null))

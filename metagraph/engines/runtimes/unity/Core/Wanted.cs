@@ -6,8 +6,8 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// What is looked at from `start` on: a point, or a name whose place the project knows. since: when the look at it began; its
-    /// place may have changed meanwhile. asked: not of its own accord.
+    /// The target of the gaze from `start` on: a point, or a name whose place the project knows. since: when the look at it
+    /// began; its place may have changed meanwhile. asked: whether a request set it.
     /// </summary>
     public sealed class GazeTarget
     {
@@ -28,7 +28,7 @@ namespace Metagraph
             Asked = asked;
         }
 
-        /// <summary>Whether it is the same but for its times.</summary>
+        /// <summary>Return whether it is the same apart from its times.</summary>
         public bool Like(GazeTarget other)
         {
             if (Amount != other.Amount || Strict != other.Strict || Asked != other.Asked)
@@ -49,7 +49,7 @@ namespace Metagraph
         public const int Place = 2;
         public const int Begin = 3;
 
-        /// <summary>Return the mode asked for; where none is, talking while something is said and idle otherwise.</summary>
+        /// <summary>Return the requested mode; without one, talking while something is said and idle otherwise.</summary>
         public static string ModeAt(Track track, double seconds)
         {
             var told = track.ToldMode(seconds);
@@ -79,7 +79,7 @@ namespace Metagraph
             return out_;
         }
 
-        /// <summary>Return what a character is in the mood for: what its life has set, and what is told over time.</summary>
+        /// <summary>Return the moods of a character: the one set in its life layers, and those requested over time.</summary>
         public static Moods MoodsOf(LifeSettings life, Track track)
         {
             return new Moods(new Mood(life.Valence, life.Arousal, life.Intensity), track.Moods);
@@ -100,7 +100,7 @@ namespace Metagraph
             return out_;
         }
 
-        /// <summary>Return what a mode makes of the amounts, in a mood.</summary>
+        /// <summary>Return the factors of the amounts for a mode and a mood.</summary>
         public static Manner WaysIn(Manner ways, Mood mood)
         {
             if (mood.Neutral)
@@ -112,9 +112,9 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what is looked at from `start` to before `end`; the first begins at `start`.
+        /// Return the targets of the gaze from `start` to before `end`; the first begins at `start`.
         ///
-        /// The latest look holds until it ends or another of its importance or more begins; a lesser one waits beneath.
+        /// The latest look holds until it ends or another of at least the same importance begins; a less important one waits.
         /// </summary>
         public static List<GazeTarget> TargetsBetween(Track track, double start, double end)
         {
@@ -127,9 +127,9 @@ namespace Metagraph
             )).ToList());
             changes.Add((start, Begin, 0));
             changes = changes.OrderBy(c => c.Item1).ThenBy(c => c.Item2).ToList();
-            var looks = new List<int>(); // places of looks, the most important first; those beneath are older or lesser
+            var looks = new List<int>(); // indices of looks, the most important first; the others are older or less important
             var places = new Dictionary<string, List<double>>();
-            foreach (PlaceFrom place in track.Places) // of a point that is told again and again there are thousands
+            foreach (PlaceFrom place in track.Places) // a point that is sent again and again has thousands
             {
                 if (place.Start < start)
                 {

@@ -6,8 +6,8 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// A joint that turns. left, up, ahead: the character's directions in its own space. share: of the hips' turn, below 0
-    /// against it.
+    /// A joint that turns. left, up, ahead: the character's directions in its own space. share: of the hips' rotation, below 0
+    /// for the opposite direction.
     /// </summary>
     public sealed class WeightBend
     {
@@ -53,10 +53,10 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// What of a skeleton answers its arms. body: joints, its `arms` being the legs, left and right, its `hands` the names of the
-    /// hands. bends: from the hips up. knees: where straight legs bend to, in the upper legs' own spaces. levers: how far to the
-    /// left and ahead of the hips arms are. up: the character's up. height: of the figure, metres. strength: how much of the
-    /// arms' layer counts, 0..1.
+    /// The part of a skeleton that reacts to its arms. body: its joints; its `arms` are the legs, left and right, its `hands` the
+    /// names of the hands. bends: from the hips up. knees: the direction in which straight legs bend, in the upper legs' own
+    /// spaces. levers: how far the arms are to the left and ahead of the hips. up: the character's up direction. height: of the
+    /// figure, metres. strength: how much of the arms' layer counts, 0..1.
     /// </summary>
     public sealed class WeightRig
     {
@@ -93,8 +93,8 @@ namespace Metagraph
 
     public static class WeightSolveRules
     {
-        public const double Balance = 1.4; // of how far the arms carry the centre of mass away, the hips give way
-        public const double Haste = 0.12; // seconds of the arms' speed that add to that
+        public const double Balance = 1.4; // factor of the arms' shift of the centre of mass by which the hips compensate
+        public const double Haste = 0.12; // seconds of the arms' speed that are added to the shift
         public const double Dip = 0.05; // seconds: arms that rise this fast press the body down, half as far at most
         public const double Spin = 30.0; // seconds: how far the pelvis turns against what arms turn about the vertical
         public const double Roll = 3.0; // radians that the pelvis rolls for a shift to a side of its own height, and
@@ -106,16 +106,16 @@ namespace Metagraph
         public const double Standing = 0.15; // and this much above it stands altogether
         public const double Give = 0.5; // of a shift: over so much a leg's full length makes itself felt
 
-        /// <summary>Whether there is anything to answer.</summary>
+        /// <summary>Return whether there is anything to react to.</summary>
         public static bool MovesBody(List<double> drive)
         {
             return drive.Any(x => x != 0.0);
         }
 
         /// <summary>
-        /// Change a pose of the rig's joints by what its arms do; return whether it did.
+        /// Change a pose of the rig's joints in reaction to its arms; return whether it changed.
         ///
-        /// drive: as `posing.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
+        /// drive: as `posing.follow_through.driven` returns it. follow, lift: the user's dials. You need not call `spread` first.
         /// </summary>
         public static bool AnswerArms(WeightRig rig, ContactPose pose, List<double> drive, double follow, double lift)
         {
@@ -145,7 +145,7 @@ namespace Metagraph
             return true;
         }
 
-        /// <summary>Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs.</summary>
+        /// <summary>Return how much a figure stands: 0 if it sits or lies, 1 on straight legs.</summary>
         public static double StandsBy(WeightRig rig, ContactPose pose)
         {
             var least = 1.0;
@@ -165,9 +165,7 @@ namespace Metagraph
             return x * x * (3.0 - 2.0 * x);
         }
 
-        /// <summary>
-        /// Shift and turn the hips, undo that in the spine, and bring the legs back to where the feet were.
-        /// </summary>
+        /// <summary>Shift and rotate the hips, undo that in the spine, and move the legs so that the feet stay.</summary>
         private static void GiveWay(WeightRig rig, ContactPose pose, List<double> drive, double follow)
         {
             var body = rig.Body;
@@ -233,8 +231,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return by how much the hips have to sink for a foot to be within a leg's reach; from a little before that on, so that
-        /// it sets in gently. reach: how far hip and foot were apart.
+        /// Return how far the hips have to sink so that the leg reaches the foot. It sets in gently, a little before the limit.
+        /// reach: the distance of hip and foot before.
         /// </summary>
         public static double HipsSink(
             WeightRig rig,
@@ -267,13 +265,13 @@ namespace Metagraph
             return over <= -soft ? 0.0 : (over + soft) * (over + soft) / (4.0 * soft);
         }
 
-        /// <summary>Return a number that never gets to `most`, and is itself where small.</summary>
+        /// <summary>Return a number limited smoothly to below `most`; small numbers stay almost as they are.</summary>
         private static double Soft(double x, double most)
         {
             return x / Math.Sqrt(1.0 + x / most * (x / most));
         }
 
-        /// <summary>Return the turn about an axis by its length times an angle, radians.</summary>
+        /// <summary>Return the rotation about an axis by its length times an angle, radians.</summary>
         private static (double, double, double, double) Turn((double, double, double) axis, double angle)
         {
             var found = axis;

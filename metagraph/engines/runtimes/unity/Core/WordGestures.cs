@@ -6,9 +6,9 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// What some words propose. words: small letters; several in a row for a phrase. tags: of a gesture of the arms, the best
-    /// first; of those a character has the first counts. head: what it does at the same time, "nod", "shake" or nothing.
-    /// strength: which of two wins.
+    /// A gesture that some words propose. words: small letters; several in a row for a phrase. tags: of a gesture of the arms,
+    /// the best first; the first one that the character has counts. head: its movement at the same time: "nod", "shake" or
+    /// nothing. strength: the stronger of two rules wins.
     /// </summary>
     public sealed class GestureRule
     {
@@ -27,8 +27,8 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// A lexicon. question, exclamation: what a sentence's end proposes for its last word that is not small. clause: what one
-    /// proposes in which no word does.
+    /// A lexicon. question, exclamation: proposed at the end of a sentence, for its last content word. clause: proposed for a
+    /// clause without other proposals.
     /// </summary>
     public sealed class GestureWords
     {
@@ -54,7 +54,7 @@ namespace Metagraph
         }
     }
 
-    /// <summary>A word of a text. plain: in small letters. mark: what stands behind it.</summary>
+    /// <summary>A word of a text. plain: in small letters. mark: the punctuation after it.</summary>
     public sealed class TextWord
     {
         public readonly string Text;
@@ -73,7 +73,7 @@ namespace Metagraph
         }
     }
 
-    /// <summary>When a synthesiser says a word.</summary>
+    /// <summary>A word with the times at which a synthesiser says it.</summary>
     public sealed class ToldWord
     {
         public readonly double Start;
@@ -87,7 +87,8 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// A gesture that goes with a word. do: "gesture", "nod" or "shake". at: of its stroke. tags: none for the head's.
+    /// A gesture that goes with a word. do: "gesture", "nod" or "shake". at: time of its stroke. tags: empty for gestures of the
+    /// head.
     /// </summary>
     public sealed class ProposedGesture
     {
@@ -110,8 +111,8 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// What is asked for a gesture. at: seconds of the session, from which on it may begin. stroke: when its stroke is wanted,
-    /// None for the head's. late: by how much it may come late.
+    /// The request for a gesture. at: the earliest second of the session at which it may begin. stroke: the time of its stroke,
+    /// None for the head. late: by how many seconds it may come late.
     /// </summary>
     public sealed class GestureAsk
     {
@@ -133,7 +134,7 @@ namespace Metagraph
         }
     }
 
-    /// <summary>A word, how many letters of the text there are up to its end, and the mark behind it.</summary>
+    /// <summary>A word, the number of letters of the text up to its end, and the mark after it.</summary>
     public sealed class SplitWord
     {
         public readonly string Text;
@@ -172,9 +173,10 @@ namespace Metagraph
         public const string Closing = "\"')”»"; // what may stand between a word and the mark behind it
 
         /// <summary>
-        /// Return a text's words with their times: as a synthesiser told them, else as long as lips would take.
+        /// Return a text's words with their times: those of a synthesiser, else as long as lips would take.
         ///
-        /// told: of the words in order; those beyond are left out. seconds: how long all of it takes, where that alone is known.
+        /// told: the times of the words in order; words without times are left out. seconds: how long all of it takes, if only
+        /// that is known.
         /// </summary>
         public static List<TextWord> WordsOf(Alphabet alphabet, string text, List<ToldWord> told = null, double? seconds = null)
         {
@@ -216,7 +218,7 @@ namespace Metagraph
             return kind == "syllable" || kind == "letter";
         }
 
-        /// <summary>Whether there are words among letters, so that there is something to say.</summary>
+        /// <summary>Return whether letters contain words, so that there is something to say.</summary>
         public static bool Telling(Alphabet alphabet, List<string> letters)
         {
             return letters.Any(letter => IsLetter(alphabet, letter));
@@ -264,10 +266,10 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the gestures that go with words, in order, none in another's way.
+        /// Return the gestures that go with words, in order and without collisions.
         ///
-        /// arms: tags that a character's gestures of the arms have; what it has none for is not proposed. head: whether the head
-        /// moves. small: words that say little by themselves.
+        /// arms: tags of the character's gestures of the arms; others are not proposed. head: whether the head moves. small:
+        /// words that say little by themselves.
         /// </summary>
         public static List<ProposedGesture> ProposedFor(
             List<TextWord> words,
@@ -322,7 +324,7 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the rule with the longest phrase that begins at a word, and how many words that has; 0 where none does.
+        /// Return the rule with the longest phrase that begins at a word, and the number of its words; 0 if there is none.
         /// </summary>
         private static (GestureRule, int) Fitting(GestureWords lexicon, List<TextWord> words, int n)
         {
@@ -343,7 +345,7 @@ namespace Metagraph
             return (best, longest);
         }
 
-        /// <summary>Whether a phrase is said from a word on, and not over a pause.</summary>
+        /// <summary>Return whether a phrase begins at a word, without a pause inside it.</summary>
         private static bool Says(List<TextWord> words, int first, List<string> parts)
         {
             if (first + parts.Count > words.Count)
@@ -389,8 +391,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Leave out what is too near to something stronger of its layer; of equals the earlier stays. The same tag twice in a
-        /// row needs more room.
+        /// Leave out gestures that are too near to a stronger one of their layer; of two equal ones the earlier stays. The same
+        /// tag twice in a row needs more room.
         /// </summary>
         private static List<ProposedGesture> Spaced(List<ProposedGesture> every)
         {
@@ -420,8 +422,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return what is asked for gestures of a text that begins at `at` seconds of the session. Those that could not be in
-        /// time are refused rather than made late.
+        /// Return the requests for the gestures of a text that begins at `at` seconds of the session. Gestures that cannot be in
+        /// time are refused, not made late.
         /// </summary>
         public static List<GestureAsk> GestureAsks(List<ProposedGesture> every, double at)
         {
@@ -442,7 +444,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return after how many letters the first sentence of a text ends, 0 where it goes on. over: whether the text does not.
+        /// Return the number of letters after which the first sentence of a text ends, 0 if it goes on. over: whether the text is
+        /// complete.
         /// </summary>
         public static int SentenceEnd(Alphabet alphabet, List<string> letters, bool over)
         {

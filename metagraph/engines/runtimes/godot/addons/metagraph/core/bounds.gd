@@ -1,13 +1,13 @@
-# By when each meta action of a plan has to be over.
+# The times by which the meta actions of a plan have to be over.
 #
 # Translated from metagraph/playback/planning/bounds.py; change that, and translate anew.
 
 const Util = preload("util.gd")
-const LOOKED_AT = 6  # how many that follow a meta action are told
+const LOOKED_AT = 6  # how many of those that follow a meta action are listed
 
 
-# A meta action with when the next more important one begins (limit), and the next as important that was asked for (wish);
-# infinity where there is none. after: those as important that were asked for and say how late they may be, the next first.
+# A meta action and its bounds. limit: when the next more important one begins; wish: when the next equally important request
+# begins; infinity if there is none. after: equally important requests that say how late they may be, the next one first.
 class Bound:
 	var meta
 	var limit
@@ -21,7 +21,7 @@ class Bound:
 		self.after = after_ if after_ != null else []
 
 
-# The first of some meta actions of a rank, written or asked for, and when it starts.
+# The first of some meta actions of a rank, written or requested, and when it starts.
 class _First:
 	var rank
 	var written
@@ -33,7 +33,7 @@ class _First:
 		self.start = start_
 
 
-# Return each meta action with what bounds it.
+# Return each meta action with its bounds.
 static func bounds(metas):
 	var out = []
 	var first = []
@@ -68,7 +68,7 @@ static func bounds(metas):
 	return Util.list(Util.backwards(out))
 
 
-# Return when a meta action may begin at the earliest. One whose stroke is judged is placed where that comes.
+# Return the earliest time at which a meta action may begin. One whose stroke is judged is placed where its stroke comes.
 static func begins(meta):
 	if meta.request.late != null and meta.request.stroke != null:
 		return Util.least(meta.start, meta.request.start)

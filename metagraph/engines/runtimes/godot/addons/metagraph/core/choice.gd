@@ -1,6 +1,6 @@
-# Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language can mix alike.
+# Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language mixes in the same way.
 #
-# Nothing is remembered between draws, so changing one request leaves the draws of all others as they were.
+# Draws remember nothing, so a change of one request does not change the draws of the others.
 #
 # Translated from metagraph/playback/planning/choice.py; change that, and translate anew.
 
@@ -11,12 +11,12 @@ const ALL = 4294967296.0  # numbers of 32 bits
 
 # Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero byte, then mixed.
 #
-# The seed, mixed, is xored into FNV's offset basis.
+# The mixed seed is xored into FNV's offset basis.
 static func key32(seed_, words):
 	return Hashing.mix(keyed(seed_, words))
 
 
-# Return what draws of one key have in common: the hash of a seed and words before it is mixed.
+# Return the hash of a seed and words before it is mixed, which all draws of one key share.
 static func keyed(seed_, words):
 	var value = Hashing.begun(seed_)
 	for word in words:
@@ -29,13 +29,13 @@ static func uniform(seed_, words):
 	return (Hashing.mix(keyed(seed_, words)) + 0.5) / ALL
 
 
-# Return what `uniform` does with one word more than a key has.
+# Return the number that `uniform` returns for a key and one more word.
 static func chance_of(key, purpose):
 	return (Hashing.mix(Hashing.absorb(key, purpose)) + 0.5) / ALL
 
 
-# Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, which any language can do alike: `a = ln(1 + (s /
-# m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+# Return a log-normal number from two uniform ones in (0, 1) by Box and Muller, in a way that any language can compute: `a = ln(1
+# + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
 static func log_normal(mean, deviation, u, v):
 	var share = deviation / mean
 	var spread = Util.log1p(share * share)
@@ -43,15 +43,15 @@ static func log_normal(mean, deviation, u, v):
 	return mean * exp(sqrt(spread) * z - spread / 2.0)
 
 
-# Return one of the ids, as `picked` does.
+# Return one of the ids, chosen as by `picked`.
 static func pick(seed_, key, purpose, weights):
 	return picked(keyed(seed_, [key]), purpose, weights)
 
 
 # Return one of the ids, id k with probability weight_k / sum.
 #
-# Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or removing one candidate
-# changes the choice only where that candidate wins. Raises ValueError when no weight is positive.
+# Each id draws its own exponential time, -log(u_k) / weight_k, and the shortest wins. So adding or removing a candidate changes
+# the choice only if that candidate wins. Raises ValueError when no weight is positive.
 static func picked(key, purpose, weights):
 	var best = ""
 	var shortest = INF

@@ -1,5 +1,5 @@
-# Find where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by how much of it
-# shows.
+# Find the goals that contacts set for the hands at a time: contacts of the cue that plays and of the loops under it, each
+# weighted by how much of it shows.
 #
 # Translated from metagraph/playback/posing/contact_goals.py; change that, and translate anew.
 
@@ -10,7 +10,7 @@ const Util = preload("util.gd")
 const LEAST = 1e-06  # of a hand: goals with less weight are not solved
 
 
-# Return where a layer wants the hands at a time.
+# Return a layer's goals for the hands at a time.
 #
 # `cue` is the one that plays, if it has motion. `place` is the index of the rest in force, -1 for none. `strength` is how much of
 # the arms the layer moves, 0..1.
@@ -25,7 +25,7 @@ static func layer_goals(rig, project, plan, cue, place, time, strength):
 				shown[arm] = weight
 		if cue.action.contacts.size() > 0:
 			var left = CueTimes.seam_left(cue, time)
-			if left > 0.0:  # what the cycle before wanted at its end, as far as its pose is still shown
+			if left > 0.0:  # the goals at the end of the previous cycle, as far as its pose still shows
 				var found = []
 				for w in shown:
 					found.append(strength * left * w)
@@ -45,7 +45,7 @@ static func layer_goals(rig, project, plan, cue, place, time, strength):
 	return out
 
 
-# Return where a loop wants the hands, less what the cue above it covers.
+# Return a loop's goals for the hands, reduced by the cue above it.
 static func _loop_goals(rig, project, rest, time, strength, shown):
 	var out = []
 	var action = rest.action

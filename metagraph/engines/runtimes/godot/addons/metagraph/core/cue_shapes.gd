@@ -1,4 +1,4 @@
-# How an action would play for a request: from when, for how long, and how late.
+# How an action would play for a request: when it begins, how long it lasts and how late it is.
 #
 # A gesture waits for its stroke or cuts its preparation to catch up with it; its hold is stretched, and its retraction may be cut
 # (Borer et al., section 6.2).
@@ -17,7 +17,7 @@ const RETRACTION = 0.4  # seconds in which an action whose retraction is cut goe
 const SHARED = 0.25  # seconds within which two strokes may be one
 
 
-# How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue.
+# How an action would play: from `start` on, for `length` seconds, at least `shortest`; the other fields are those of a cue.
 class CueShape:
 	var start
 	var entry
@@ -39,7 +39,8 @@ class CueShape:
 		self.tempo = tempo_
 
 
-# Return how an action would play for a request from `now` on, or as a step on the way to it. speed: a factor of its own.
+# Return how an action would play for a request from `now` on, or as a step on the way to it. speed: a factor of the action's own
+# speed.
 static func shape_of(project, action, request, now, speed):
 	var both = project.span(action)
 	var start = both[0]
@@ -85,13 +86,13 @@ static func shape_of(project, action, request, now, speed):
 	return CueShape.new(begin, entry, length, shortest, hold_from, hold_to, hold, speed)
 
 
-# Whether something that plays so is over by a limit.
+# Return whether something with this shape is over by a limit.
 static func fits_before(shape, limit):
 	return shape.start + shape.shortest <= limit + FITS
 
 
-# Return by how many seconds an action that plays so comes late, at its stroke where one is asked for; less than 0 before its
-# time.
+# Return by how many seconds an action with this shape comes late, measured at its stroke if the request has one; below 0 if it
+# comes early.
 static func lateness(project, action, request, shape):
 	if request.stroke != null and action.kind == "gesture":
 		var found = Phases.find_phases(project, action)
@@ -100,12 +101,12 @@ static func lateness(project, action, request, shape):
 	return shape.start - request.start
 
 
-# Return by how many seconds a request may come late, 0 where it does not say.
+# Return by how many seconds a request may come late, 0 if it does not say.
 static func slack_of(request):
 	return 0.0 if request.late == null else request.late
 
 
-# Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked for.
+# Return how many seconds a gesture takes if its retraction is cut and its hold is left out, unless the request has a hold.
 static func hurried(project, action, shape):
 	var both = project.span(action)
 	var start = both[0]
@@ -123,7 +124,7 @@ static func hurried(project, action, shape):
 	return Util.least(shape.length, left + Util.most(action.timing.blend_out, RETRACTION))
 
 
-# Whether two requests may be met by one stroke.
+# Return whether one stroke may meet two requests.
 static func may_share(request, other):
 	if request.stroke == null or other.stroke == null:
 		return false
@@ -134,7 +135,7 @@ static func may_share(request, other):
 		and Util.absolute(request.stroke - other.stroke) <= SHARED)
 
 
-# Whether an action is what a request for any asks for.
+# Return whether an action fits a request that does not name one.
 static func meets(action, request):
 	var are_all = true
 	for tag in request.tags:
@@ -146,7 +147,7 @@ static func meets(action, request):
 		and (request.among.size() == 0 or request.among.has(action.id)))
 
 
-# Return what a meta action asks for; of a remainder, for as long as is left. A model says no length.
+# Return the request of a meta action; for a remainder, with the duration that is left. What a model wrote has no duration.
 static func remaining(meta, now):
 	var request = meta.request
 	if request.duration == null or (meta.part == 0 and not meta.written):

@@ -3,10 +3,10 @@
 # What is known and followed here: speakers raise their brows on stressed words (Cave et al. 1996), from about 60 ms before the
 # accent (Flecha-Garcia 2010), and where they ask (Ekman 1979); greeting, people flash their brows for about a third of a second
 # (Eibl-Eibesfeldt 1972); felt smiles come and go in 2/3 to 4 s and raise the cheeks (Ekman and Friesen 1982), posed ones may
-# stay. So a mood's face comes up and goes back to part of it instead of standing there. How much, how often and for which tags is
-# ours.
+# stay. So the face of a mood rises and falls back to a part of it, instead of being constant. How much, how often and for which
+# tags is ours.
 #
-# Where `Life.expressions` is 0, or at full stillness, what a mood shows stands as it is and nothing else comes.
+# If `Life.expressions` is 0, or at full stillness, the face of a mood is constant and nothing else is added.
 #
 # Translated from metagraph/playback/life/expressions.py; change that, and translate anew.
 
@@ -55,8 +55,8 @@ const MARKS = ["?", "？", "؟"]  # at the end of questions
 const DUCHENNE = 0.2  # the smile from which on cheeks rise
 
 
-# What a face shows beside lids and lips: weights of its channels. brow_up raises the brows' inner ends alone, brows the whole of
-# them. One is filled again for each time (`shown_face`, `answer`, `settle`).
+# The weights of a face's channels, without lids and lips. brow_up raises only the inner ends of the brows, brows the whole of
+# them. The same object is filled again for each time (`shown_face`, `answer`, `settle`).
 class FaceShown:
 	var smile
 	var frown
@@ -95,8 +95,8 @@ static func swells_on(track, seed_, cut, drawn, before):
 		number += 1
 
 
-# Return the lane of emphases filled from `cut` to `drawn` seconds: on as many stressed syllables as `accent_brows` says, at the
-# end of questions, and where a reaction begins.
+# Return the lane of emphases filled from `cut` to `drawn` seconds: on the share of stressed syllables that `accent_brows` says,
+# at the end of questions, and where a reaction begins.
 static func emphases_on(life, track, voices, seed_, cut, drawn, before):
 	var found = []
 	var chance
@@ -136,7 +136,7 @@ static func emphases_on(life, track, voices, seed_, cut, drawn, before):
 	return before.plus(times, rows)
 
 
-# Whether something said is a question, by its last sign.
+# Return whether a speech is a question, by its last sign.
 static func asks(speech):
 	var text = speech.text.strip_edges()
 	var holds = text != ""
@@ -150,7 +150,7 @@ static func asks(speech):
 	return holds
 
 
-# Fill in the face of a mood at a time, and of what was drawn.
+# Fill in the face at a time, from the mood and the drawn events.
 static func shown_face(face, life, swells, emphases, bears, seconds):
 	var calm = 1 - life.stillness
 	var swell = 0.0
@@ -207,7 +207,7 @@ static func answer(face, life, tags, start, end, seconds):
 			face.brows += much * Mood.faded(Util.least(flash / FLASH_RISES, left / (FLASH_LASTS - FLASH_RISES)))
 
 
-# Keep all within 0..1, and raise the cheeks with a smile.
+# Clamp all weights to 0..1, and raise the cheeks with a smile.
 static func settle(face):
 	face.smile = Mood.within(face.smile, 0.0, 1.0)
 	face.frown = Mood.within(face.frown, 0.0, 1.0)

@@ -1,8 +1,8 @@
-# Bringing feet to where they should stand: two-bone legs whose knees keep their direction, under hips that come along and sink
-# rather than let a leg snap straight.
+# Move feet to where they should stand, with two-bone legs whose knees keep their direction. The hips move along and sink, so that
+# no leg snaps straight.
 #
-# Rotations are quaternions xyzw, lengths metres. Worked out one pose at a time, in plain numbers, the same in all languages. All
-# amounts are ours, chosen by eye.
+# Rotations are quaternions xyzw, lengths metres. The code computes one pose at a time, with plain numbers, the same in all
+# languages. All amounts are ours, chosen by eye.
 #
 # Translated from metagraph/motion/feet_solve.py; change that, and translate anew.
 
@@ -18,8 +18,8 @@ const HIGH = 0.05  # metres in the air
 const TURNING = 0.15  # metres that a turn of a radian counts as way
 
 
-# Where a foot's joint should be, in the character's space. planted: how much it stands there, 0..1. lift: metres that a step has
-# it above that.
+# Where a foot's joint should be, in the character's space. planted: how firmly it stands there, 0..1. lift: height of a step
+# above that, metres.
 class FootGoal:
 	var at
 	var turn
@@ -33,7 +33,7 @@ class FootGoal:
 		self.lift = lift_
 
 
-# Return how far it is from one place of a foot to another, metres, a turn counted in.
+# Return the distance between two places of a foot, in metres; a rotation counts as a distance, too.
 static func foot_way(a, b):
 	var both = a.turn
 	var ax = both[0]
@@ -50,8 +50,8 @@ static func foot_way(a, b):
 	return PlainVectors.length(PlainVectors.minus(b.at, a.at)) + TURNING * turn
 
 
-# Bring feet to their goals, as much as those are planted; return whether anything moved. goals: left, right, or none. strength:
-# the dial. Joints' places need not be known.
+# Move feet to their goals, as far as these are planted; return whether anything moved. goals: left and right, or none. strength:
+# the user's dial. You need not call `spread` first.
 static func plant_feet(rig, pose, goals, strength):
 	if goals.size() != 2 or strength <= 0.0:
 		return false

@@ -1,10 +1,10 @@
-# Actions and stances by what they are called.
+# Find actions and stances by id or name.
 #
 # Translated from metagraph/playback/planning/finding.py; change that, and translate anew.
 
 
 
-# Return the action of an id or, failing that, a name; of several of one name the likeliest. layer: None for any.
+# Return the action with an id or, failing that, with a name; of several with the same name, the likeliest. layer: None for any.
 static func action_called(graphs, word, layer):
 	for graph in graphs:
 		var found = graph.actions.get(word)
@@ -19,7 +19,7 @@ static func action_called(graphs, word, layer):
 	return best
 
 
-# Return the stance of an id or, failing that, a name, in the first layer that has one so called.
+# Return the stance with an id or, failing that, with a name, in the first layer that has one.
 static func stance_called(graphs, word, layer):
 	for graph in graphs:
 		if layer == null or layer == graph.layer:

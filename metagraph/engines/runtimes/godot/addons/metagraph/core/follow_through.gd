@@ -1,7 +1,7 @@
-# Compute what the arms of a plan weigh at a time: how far a gesture has carried their mass away from its stance.
+# Compute how far the arms of a plan have moved their mass away from its stance at a time.
 #
-# The body answers with a delay, so it follows not the arms' place at one time but a cubic B-spline through their places at four
-# fixed times before it. This is smooth, and a function of plan and time only.
+# The body reacts with a delay. So it does not follow the arms at one moment, but a cubic B-spline through their places at four
+# earlier fixed times. This is smooth, and depends only on plan and time.
 #
 # Translated from metagraph/playback/posing/follow_through.py; change that, and translate anew.
 
@@ -15,7 +15,7 @@ const UNIT = 1e-05  # metres, or radians, of 1 in a row
 const NUMBERS = 8  # in a row
 
 
-# What a clip's arms do.
+# How the arms of a clip move their mass.
 #
 # `clip` is its id. `rows` has a row for each tenth of a second, relative to the base pose: how far the left arm shifts the centre
 # of mass of the whole body to the left, up and ahead, the same for the right arm, and how far each collar bone lags behind its
@@ -42,8 +42,8 @@ static func knot_time(number):
 # Return how far the arms are from their stance at a time, as a row of a track, in metres and radians.
 #
 # `tracks` are by action. `hands` names the joints of the hands. `cue` is that of the arms' layer, if it has motion, and `place`
-# the index of the rest in force, -1 for none; `body_cue` and `body_place` are the same for the body's layer. A cue of the clip
-# that the body's layer also shows brings its own hips and does not count.
+# the index of the rest in force, -1 for none; `body_cue` and `body_place` are the same for the body's layer. A cue whose clip the
+# body's layer also shows moves the hips itself and does not count.
 static func arm_sway(project, tracks, hands, arms, cue, place, body, body_cue, body_place, time):
 	var out = []
 	for n2 in range(NUMBERS):
@@ -85,7 +85,7 @@ static func arm_sway(project, tracks, hands, arms, cue, place, body, body_cue, b
 	return out
 
 
-# Return what moves the body at a time: the eight numbers, and their change a second. `sways` has the rows of the last `KNOTS`
+# Return the eight numbers that move the body at a time, and their change per second. `sways` has the rows of the last `KNOTS`
 # times before it.
 static func driven(sways, time):
 	var u = (time - OFFSET) / STEP

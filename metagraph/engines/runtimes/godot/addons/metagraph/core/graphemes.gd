@@ -1,6 +1,6 @@
-# From letters to mouth shapes: what a mouth may do when neither sound nor phones of a line are there.
+# From letters to mouth shapes: what a mouth does if a line has neither sound nor phones.
 #
-# English spelling is read by a few rules; other alphabets by their vowels, what is unknown by turns of open and shut.
+# A few rules read English spelling. Other alphabets are read by their vowels. Unknown letters open and shut the mouth in turn.
 #
 # Translated from metagraph/playback/life/graphemes.py; change that, and translate anew.
 
@@ -224,7 +224,7 @@ static func _unknown(alphabet, letter, before):
 	return []
 
 
-# Return each word and how many characters' time of pause follows it.
+# Return each word, and the pause after it, measured in characters.
 static func split_words(alphabet, text):
 	var out = []
 	var word = ""
@@ -243,7 +243,7 @@ static func split_words(alphabet, text):
 	return out
 
 
-# A sound of a text. shape: "" for a pause. size: characters' time. strength: of a syllable, 0 for what is none.
+# A sound of a text. shape: "" for a pause. size: characters' time. strength: of a syllable, 0 for anything else.
 class SpelledSound:
 	var shape
 	var size
@@ -257,7 +257,7 @@ class SpelledSound:
 
 # Return a word's sounds, in turn.
 #
-# Content words are longer than the words between them; the first vowel bears the stress more often than not.
+# Content words are longer than the words between them. The first vowel usually has the stress.
 static func sounds(alphabet, word):
 	var out = []
 	var found = shapes(alphabet, word)
@@ -274,7 +274,7 @@ static func sounds(alphabet, word):
 	return out
 
 
-# Something said, as its letters tell: pieces in time, times and strengths (0..1) of its syllables.
+# Something said, timed by its letters: pieces in time, and times and strengths (0..1) of its syllables.
 class Spelled:
 	var pieces
 	var peaks
@@ -312,7 +312,7 @@ static func read_aloud(alphabet, text):
 	return Util.most(SHORTEST, Util.sum(found) / PACE)
 
 
-# Return how many characters' time a letter takes, by its code point: one of Chinese, Japanese or Korean is a syllable.
+# Return how long a letter takes, measured in characters, by its code point: a Chinese, Japanese or Korean one is a syllable.
 static func measure_letter(code):
 	for script in _SYLLABARIES():
 		if script.first <= code and code <= script.last:
@@ -320,7 +320,7 @@ static func measure_letter(code):
 	return 1.0
 
 
-# Return what a text says in `duration` seconds; nothing where no letter of it is known.
+# Return the sounds of a text that lasts `duration` seconds; none if it has no known letter.
 static func spelled(alphabet, text, duration):
 	var out = Spelled.new()
 	var plan = []

@@ -1,4 +1,5 @@
-# What asks do to a running plan: what they take back, what lasts from then on, and which layers have to be planned again.
+# The effect of requests on a running plan: what they take back, what lasts from then on, and which layers have to be planned
+# again.
 #
 # Translated from metagraph/playback/planning/hearing.py; change that, and translate anew.
 
@@ -13,9 +14,8 @@ const Util = preload("util.gd")
 const LISTENS = 2.0  # seconds for which the gaze stays with the partner who interrupts
 
 
-# track: what lasts. fresh: what is asked of layers, with what goes on after a pause. withdrawn: ids of what was asked for before
-# and is not any more; stopped: those of them that were taken back and not asked for anew. touched: layers that asks have to do
-# with.
+# track: lasting items. fresh: requests of layers, with those that continue after a pause. withdrawn: ids of earlier requests that
+# no longer hold; stopped: those of them that were taken back, not replaced. touched: layers that the requests affect.
 class Heard:
 	var track
 	var fresh
@@ -31,7 +31,7 @@ class Heard:
 		self.touched = touched_
 
 
-# Return the asks a request may have been made by: that of its own id, and those of which it would be a part.
+# Return the ids of the asks from which a request may come: its own id, and those of which it would be a part.
 static func owners(ident):
 	var out = [ident]
 	var left = ident
@@ -47,7 +47,7 @@ static func owners(ident):
 		out.append(left)
 
 
-# Return what a request goes with when it is taken back: its `owners`, and what is said that a gesture was made for: "answer" for
+# Return the ids with which a request is taken back: its `owners`, and the speech that a gesture belongs to: "answer" for
 # "answer/2".
 static func makers(ident):
 	var out = owners(ident)
@@ -60,8 +60,9 @@ static func makers(ident):
 	return out
 
 
-# Return what asks do. requests, track: of the plan. meant: what is asked for, where speeches may overlap. now: what begins before
-# stays; soon: so for voices. turning: layers whose models perform one thing in one mode and another in another.
+# Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it. now:
+# everything that begins earlier stays; soon: the same for voices. turning: layers whose models perform differently in different
+# modes.
 static func heard(requests, track, meant, now, soon, turning):
 	var more = meant.track()
 	var gone = Util.set_of(meant.withdrawn)
@@ -76,7 +77,7 @@ static func heard(requests, track, meant, now, soon, turning):
 	for r in requests:
 		before.append(r.id)
 	Util.extend(before, track.idents())
-	# Who takes everything back still looks at whom it talks with.
+	# A client that takes everything back keeps the look at the user.
 	var user = {}
 	for x in track.looks:
 		if x.start < now and Spots.is_same_spot(x.to, Spots.named("user")):
@@ -123,7 +124,7 @@ static func heard(requests, track, meant, now, soon, turning):
 			holds5 = holds4
 		if holds5:
 			Util.add_to(taken, ident)
-	# Where the models may change stances again means nothing where they always might.
+	# Leave to change stances again means nothing if the models always may.
 	var staying = {}
 	for s in track.stays:
 		if s.on:
@@ -160,7 +161,7 @@ static func heard(requests, track, meant, now, soon, turning):
 				break
 		holds6 = is_any5
 	var turns = holds6
-	if turns:  # who talks moves otherwise than who listens
+	if turns:  # talking and listening characters move differently
 		for layer in turning:
 			Util.add_to(touched, layer)
 	var holds7 = more.moods.size() > 0
@@ -196,9 +197,9 @@ static func heard(requests, track, meant, now, soon, turning):
 	return _steer(requests, said, meant, now, soon)
 
 
-# What speeches become beside those that are said already. said: all that are new or changed. begun: ids of those of which an
-# earlier one is in them, changed; on: ids of which what is said already goes on. anew: ids under which something else was said
-# before. moods: what is asked for with them.
+# New speeches, combined with those that are being said. said: all that are new or changed. begun: ids of changed earlier ones
+# among them; on: ids of those that continue. `anew`: ids under which something else was said before. moods: the moods requested
+# with them.
 class AddedSpeeches:
 	var said
 	var begun
@@ -213,7 +214,8 @@ class AddedSpeeches:
 		self.anew = anew_
 		self.moods = moods_
 
-	# Return what of a track stays beside these: moods of what goes on last as long as that, where no other is asked for.
+	# Return the part of a track that stays: moods of speeches that continue last as long as these, unless another mood is
+	# requested.
 	func leave(track):
 		if self.on.size() == 0:
 			return track
@@ -245,7 +247,7 @@ class AddedSpeeches:
 		)
 
 
-# Return what asks to say something make of a track: a line, something behind a line, or more of one.
+# Return the effect of asks to say something on a track: a new line, a line after another, or more of one.
 static func add_speeches(meant, track, soon):
 	var said = []
 	var begun = {}
@@ -318,8 +320,7 @@ static func add_speeches(meant, track, soon):
 	return AddedSpeeches.new(said, begun, on, anew, moods)
 
 
-# Return what asks do with what is said: it is broken off, paused, gone on with or finished, in turn. requests: of the plan
-# before.
+# Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the plan before.
 static func _steer(requests, heard, meant, now, soon):
 	if meant.steered.size() == 0:
 		return heard
@@ -366,7 +367,7 @@ static func _steer(requests, heard, meant, now, soon):
 	return Heard.new(steered.track, fresh, steered.withdrawn, steered.stopped, steered.touched)
 
 
-# A track and requests while asks steer what is said. anew: ids of the requests that are asked for anew; the rest is as in
+# A track and requests while asks steer speech. `anew`: ids of the requests that are made again; the other fields are as in
 # `Heard`.
 class SteeredSpeech:
 	var track
@@ -384,14 +385,14 @@ class SteeredSpeech:
 		self.requests = requests_ if requests_ != null else []
 		self.anew = anew_ if anew_ != null else {}
 
-	# Return the ids of all of it.
+	# Return the ids of everything in it.
 	func idents():
 		var found = []
 		for r in self.requests:
 			found.append(r.id)
 		return found + self.track.idents()
 
-	# Break off an utterance at `stop`, and what was made for it at `now`.
+	# Break off an utterance at `stop`, and the requests that belong to it at `now`.
 	func interrupt(ident, made, stop, now, soon):
 		if Utterances.goes_on(self.track.speeches, ident, soon):
 			self.track = Utterances.break_off(self.track, ident, stop)
@@ -415,7 +416,7 @@ class SteeredSpeech:
 				found.append(r)
 		self.requests = found
 
-	# Hold an utterance, and what was made for it and has not had its moment; what has begun goes back.
+	# Pause an utterance, and the requests that belong to it and whose moment has not come; those that have begun go back.
 	func pause(ident, made, stop, now):
 		if Utterances.is_paused(stop):
 			return
@@ -436,7 +437,7 @@ class SteeredSpeech:
 				Util.add_to(self.anew, request.id)
 		self.requests = kept
 
-	# Go on with an utterance that is paused, and with what waits for it.
+	# Resume a paused utterance, and the requests that wait for it.
 	func resume(ident, made, now, soon):
 		var first = null
 		for s in self.track.speeches:
@@ -458,7 +459,7 @@ class SteeredSpeech:
 				kept.append(request)
 		self.requests = kept
 
-	# Return a request moved by so many seconds, to no earlier than `least`.
+	# Return a request moved by a number of seconds, but not to before `least`.
 	func move_request(request, by, least):
 		var stroke = null if request.stroke == null else request.stroke + by
 		return MetaPlan.MetaRequest.new(

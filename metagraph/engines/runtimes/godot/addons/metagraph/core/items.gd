@@ -1,5 +1,4 @@
-# What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in. Values; times are
-# seconds.
+# Requests that last: where to look, what to say, which mode to be in, which stance to stay in. Values; times are seconds.
 #
 # Translated from metagraph/playback/life/items.py; change that, and translate anew.
 
@@ -8,7 +7,7 @@ const Spots = preload("spots.gd")
 const Util = preload("util.gd")
 
 
-# Look at a point or a named point from `start` until `end`, or until the next look. strict: without averting.
+# Look at a point or a named point from `start` until `end`, or until the next look. strict: without looking away.
 class LookAt:
 	var id
 	var start
@@ -28,10 +27,10 @@ class LookAt:
 		self.priority = priority_
 
 
-# Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower. length:
-# seconds all of it would have taken, where something cut it short. timing: when its words and mouth shapes come, where that was
-# told. skip: seconds of it that were said before a pause. more: whether more of it may come, so that it is not over when it falls
-# silent. over: when it was said that none does, where it had fallen silent.
+# Something said. line: id of the project's line, None for `text` alone. priority: a higher one interrupts a lower one. length:
+# seconds that all of it would have taken, if it was cut short. timing: the times of its words and mouth shapes, if known. skip:
+# seconds of it that were said before a pause. more: whether more of it may come, so that it is not over when it falls silent.
+# over: when it was finished, if it had fallen silent before.
 class Speech:
 	var id
 	var start
@@ -97,7 +96,7 @@ class PlaceFrom:
 		self.point = point_
 
 
-# A blink asked for.
+# A requested blink.
 class BlinkAt:
 	var id
 	var start
@@ -107,7 +106,8 @@ class BlinkAt:
 		self.start = start_
 
 
-# From `start` on the models change no stance of a layer (or, with `on` false, may again), until `end` or the next of these.
+# From `start` on, the models change no stance of a layer, or may do so again with `on` false, until `end` or the next item of
+# this kind.
 class StayFrom:
 	var id
 	var start
@@ -123,17 +123,17 @@ class StayFrom:
 		self.end = end_
 
 
-# Return the second that what is said counts from: before its start if it goes on after a pause.
+# Return the second from which the times of a speech count: before its start if it continues after a pause.
 static func find_line_start(speech):
 	return speech.start - speech.skip
 
 
-# Return how long all of it takes, seconds, with what was said before a pause and what was cut off.
+# Return how many seconds all of a speech takes, with the part before a pause and the part that was cut off.
 static func measure_line(speech):
 	return speech.end - find_line_start(speech) if speech.length == null else speech.length
 
 
-# Return the speech, ending no later than `at`; how long it would have been is remembered.
+# Return the speech, ending no later than `at`; it remembers its full length.
 static func cut(speech, at):
 	return speech if speech.end <= at else Speech.new(
 		speech.id,
@@ -150,8 +150,8 @@ static func cut(speech, at):
 	)
 
 
-# Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, with what is
-# said behind it under its id; a lesser one is not said.
+# Return speeches, given in order, without overlaps: one of equal or higher importance cuts the running one, with its later
+# pieces; a less important one is dropped.
 static func apart(speeches):
 	var out = []
 	var ends = {}  # when what was cut would have ended
@@ -184,7 +184,7 @@ static func apart(speeches):
 	return out
 
 
-# Return a text that comes while another one of its id is said: it is said after that. said: in order.
+# Return a text moved to after another one of its id that is being said. said: in order.
 static func behind(said, new, now):
 	if new.timing != null or new.line != null or new.start > now:
 		return new
@@ -208,8 +208,8 @@ static func behind(said, new, now):
 	)
 
 
-# Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it keeps its start and what has
-# been said of it. Only lines whose words or shapes were told with their times do.
+# Return a line as the continuation of the last one with the same id, if that has begun by `now` or begins with it: it keeps the
+# start and what has been said. Only lines whose words or shapes have times continue.
 static func going_on(old, new, now):
 	if old == null or old.timing == null or new.timing == null or old.length != null:
 		return new
@@ -239,7 +239,7 @@ static func going_on(old, new, now):
 	)
 
 
-# Return a text with the times its letters tell, so that what comes of it later can be added.
+# Return a text with times estimated from its letters, so that later pieces can be added.
 static func pace_speech(alphabet, new):
 	var timing = LineTiming.pace_text(alphabet, new.text, null)
 	var length = LineTiming.timed_seconds(timing, LineTiming.measure_text(alphabet, new.text))
@@ -258,7 +258,7 @@ static func pace_speech(alphabet, new):
 	)
 
 
-# Return a line with a text behind what was told of it. told, more: their words.
+# Return a line with a text after its known words. told, more: the words of both.
 static func _behind_words(old, told, new, more, now):
 	var begin = find_line_start(old)
 	var at = Util.most(now - begin, Util.most(old.skip, old.end - begin))
@@ -279,7 +279,7 @@ static func _behind_words(old, told, new, more, now):
 	)
 
 
-# Whether two tracks' looks are the same; so for the others below.
+# Return whether the looks of two tracks are the same. The functions below compare other items.
 static func alike_looks(one, other):
 	var holds = one.size() == other.size()
 	if holds:

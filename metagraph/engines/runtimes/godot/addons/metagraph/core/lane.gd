@@ -1,12 +1,12 @@
-# A lane of events in time, drawn one after another: never changed, extended at the end, forgotten at the front.
+# A lane of events in time, drawn one after another. It never changes: it is extended at the end and forgotten at the front.
 #
 # Translated from metagraph/playback/life/lane.py; change that, and translate anew.
 
 const Util = preload("util.gd")
 
 
-# times: when events begin, ascending, seconds. rows: what each event is. first: number of the first event that is still kept.
-# width: how many numbers a row has.
+# times: when events begin, ascending, seconds. rows: the values of each event. first: number of the first event that is still
+# kept. width: how many numbers a row has.
 class Lane:
 	var times
 	var rows
@@ -21,7 +21,7 @@ class Lane:
 		self.width = width_
 		self.next = self.first + self.times.size()
 
-	# Return the lane with only what begins before a time.
+	# Return the lane with only the events that begin before a time.
 	func until(seconds):
 		var count = Util.left_of(self.times, seconds)
 		if count == self.times.size():
@@ -34,7 +34,7 @@ class Lane:
 			return self
 		return Lane.new(self.times + times, self.rows + rows, self.first, self.width)
 
-	# Return the lane without what neither goes on at `seconds` nor comes later; `before`: how many more are kept.
+	# Return the lane without events that are over at `seconds`; `before`: how many of those to keep.
 	func since(seconds, before = 1):
 		var gone = Util.most(0, Util.right_of(self.times, seconds) - 1 - before)
 		if gone == 0:

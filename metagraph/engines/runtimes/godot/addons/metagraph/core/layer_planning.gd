@@ -1,5 +1,5 @@
-# Planning one layer on: what was planned for later is taken back to its meta actions, merged with new requests, placed and
-# performed again (Borer et al., section 6).
+# Extend the plan of one layer: the later part of the plan is turned back into its meta actions, merged with new requests, placed
+# and performed again (Borer et al., section 6).
 #
 # Translated from metagraph/playback/planning/layer_planning.py; change that, and translate anew.
 
@@ -15,8 +15,8 @@ const WINDOW = 1.0  # seconds a request may use when it does not say how long
 
 # A layer placed in time, not yet performed.
 #
-# able: whether the layer can perform at all. done: meta actions that were performed before. placed: those to be performed, in
-# order; what a model wrote among them is performed as its mode says. reports: what was told so far.
+# able: whether the layer can perform at all. done: meta actions that were performed before. placed: those to perform, in order;
+# those that a model wrote are performed as the mode says. reports: the reports so far.
 class LayerDraft:
 	var layer
 	var performer
@@ -39,7 +39,7 @@ class LayerDraft:
 		self.cursor = cursor_
 		self.written = written_
 
-	# Return the layer's plan, with those of its meta actions performed that are given; `reports` then tells all.
+	# Return the layer's plan with the given meta actions performed; `reports` is then complete.
 	func performed(metas, end):
 		var cues = []
 		var rests = []
@@ -61,11 +61,11 @@ class LayerDraft:
 		)
 
 
-# Return a layer's plan taken back to `now`, with what is asked for placed anew.
+# Return a layer's plan cut at `now`, with the requests placed again.
 #
-# chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so far. fresh:
-# requests, of all layers. replaced: ids of those that are asked for anew or withdrawn; stopped: those withdrawn, whose running
-# action is left. stance: which the layer would begin in. moods: what it is in the mood for, and when.
+# chain: the model that writes when there are no requests, or None. kinds: the kinds of actions that the layer has. told: reports
+# of the plan so far. fresh: new requests, of all layers. replaced: ids of requests that are replaced or withdrawn; stopped: those
+# withdrawn, whose running action is left. stance: the stance in which the layer would begin. moods: the mood over time.
 static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, replaced, stopped, end, stance, moods):
 	var layer = graph.layer
 	var asked = []
@@ -106,7 +106,7 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 				Util.add_to(again, meta.request.id)
 	var future = []
 	var planned = {}  # again: when those of a request start
-	var judged = {}  # those whose lateness is told by what is performed
+	var judged = {}  # those whose lateness is known once they are performed
 	for meta in old.metas:
 		if again.has(meta.request.id) or served.has(meta.request.id):
 			continue
@@ -115,7 +115,7 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 			if meta.request.late != null:
 				Util.add_to(judged, meta.request.id)
 			planned[meta.request.id] = planned.get(meta.request.id, []) + [meta.start]
-	# What was told about time still holds; the rest will be told again by those that are planned again.
+	# Reports about time still hold; those that are planned again report the rest.
 	var done = []
 	for meta2 in old.metas:
 		if (not again.has(meta2.request.id)
@@ -176,7 +176,7 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 	return LayerDraft.new(layer, performer, true, done, placed, every, old.past, cursor, written)
 
 
-# Return a request that may begin as much earlier as its preparation takes longer in its mood.
+# Return a request that may begin earlier, by the extra time that its preparation takes in its mood.
 static func in_time(request, moods):
 	if request.stroke == null:
 		return request
@@ -207,7 +207,7 @@ static func in_time(request, moods):
 	)
 
 
-# Return a request with the window it may use; where its stroke is judged, the moment it is wanted at.
+# Return a request as a meta action with the window it may use; if its stroke is judged, with the moment of the stroke.
 static func meta_of(request):
 	if request.late != null and request.stroke != null:
 		return MetaPlan.MetaAction.new(request, request.stroke, request.stroke + CueShapes.FITS)
@@ -217,7 +217,8 @@ static func meta_of(request):
 	return MetaPlan.MetaAction.new(request, request.start, request.start + length)
 
 
-# Return the stance a layer begins in: as it did before, as asked, the graph's start, or the first that has a loop; "" for none.
+# Return the stance in which a layer begins: that of the plan before, the given one, the graph's start, or the first that has a
+# loop; "" for none.
 static func _begin(graph, old, stance):
 	var wishes = [old.past.stance]
 	if old.rests.size() > 0:

@@ -1,17 +1,17 @@
-# When a line's words and mouth shapes come, as a synthesiser tells them: the mouth follows them and is shut between. Times are
-# seconds from the line's start.
+# The times of a line's words and mouth shapes, as a synthesiser reports them: the mouth follows them and is shut in between.
+# Times are seconds from the line's start.
 #
 # Translated from metagraph/playback/life/line_timing.py; change that, and translate anew.
 
 const Graphemes = preload("graphemes.gd")
 const Mouth = preload("mouth.gd")
 const Util = preload("util.gd")
-const WORD = 0.15  # seconds a word takes of which only the start is told, if nothing comes before
-const LETTER = 0.07  # and for each of its letters
-const SHAPE = 0.2  # seconds the last shape of a line stays
+const WORD = 0.15  # seconds that a word takes if only its start is known and nothing comes sooner
+const LETTER = 0.07  # and seconds for each of its letters
+const SHAPE = 0.2  # seconds for which the last shape of a line stays
 const FARTHEST = 3600.0  # seconds of a line
-const AGAIN = 0.1  # seconds before the last shape of a line, from which on a shape that is told later belongs to it
-const SLACK = 0.05  # seconds by which times may be past the end they are told with
+const AGAIN = 0.1  # a later piece belongs to a line from this many seconds before its last shape on
+const SLACK = 0.05  # seconds by which times may exceed the given end
 # What each viseme of a set shows of the mouth shapes, and how fully.
 const OCULUS = {
 	"sil": "sil",
@@ -99,7 +99,7 @@ const SETS = ["oculus", "azure", "sapi", "polly", "arkit"]
 const WEAK = {"@": 0.6, "12": 0.5, "1": 0.8, "mouthSmileLeft": 0.3, "mouthSmileRight": 0.3}
 
 
-# A word from `start` to `end`; None where only its start is told.
+# A word from `start` to `end`; `end` is None if only its start is known.
 class SpokenWord:
 	var text
 	var start
@@ -111,8 +111,8 @@ class SpokenWord:
 		self.end = end_
 
 
-# A mouth shape from `at` until the next mark of a later time. viseme: its name in the set it is of, of `VISEMES` in a
-# `LineTiming`. weight: how fully it is made, 0..1.
+# A mouth shape from `at` until the next mark of a later time. viseme: its name in its set; in a `LineTiming`, one of `VISEMES`.
+# weight: how fully it is made, 0..1.
 class VisemeMark:
 	var at
 	var viseme
@@ -124,8 +124,8 @@ class VisemeMark:
 		self.weight = weight_
 
 
-# A line's words and mouth shapes, each by time. later: seconds by which what is told later is said later, because something came
-# after its time. paced: whether nobody told the times, and they follow from the letters.
+# A line's words and mouth shapes, each by time. later: seconds by which later pieces are delayed, because one came after its
+# time. paced: whether the times are estimated from the letters.
 class LineTiming:
 	var words
 	var marks
@@ -139,7 +139,7 @@ class LineTiming:
 		self.paced = paced_
 
 
-# Whether two lines' words and shapes come alike.
+# Return whether two lines have the same words and shapes at the same times.
 static func alike_timings(one, other):
 	if one == null or other == null:
 		return one == null and other == null
@@ -174,7 +174,7 @@ static func _table(name):
 	return ARKIT if name == "arkit" else AZURE
 
 
-# Return the first set that has all of some visemes, "" where none has.
+# Return the first set that has all of the visemes, "" if none has.
 static func set_of(marks):
 	for name in SETS:
 		var are_all = true
@@ -187,9 +187,9 @@ static func set_of(marks):
 	return ""
 
 
-# Return what is wrong with a line's times, where, and what would be right; "" where nothing is.
+# Return what is wrong with a line's times, where, and what would be right; "" if nothing is wrong.
 #
-# name: of the set the visemes are of, "" for what their names tell. duration: seconds of its sound, None where that is not told.
+# name: of the visemes' set, "" to find it by their names. duration: seconds of its sound, None if unknown.
 static func wrong_in(words, marks, name, duration):
 	var last = 0.0
 	var why
@@ -244,7 +244,7 @@ static func _out_of_range(seconds):
 	return "is at %s s; times are from 0 to %.1f s from the line's start" % [Util.thousandths(seconds), FARTHEST]
 
 
-# Return the timing that words and visemes in which nothing is wrong make. name: as for `wrong_in`.
+# Return the timing of words and visemes that are valid. name: as for `wrong_in`.
 static func timing_of(alphabet, words, marks, name):
 	var table = _table(set_of(marks) if name == "" else name)
 	var shown = []
@@ -267,7 +267,7 @@ static func timing_of(alphabet, words, marks, name):
 	return LineTiming.new(Util.list(said), Util.list(shown))
 
 
-# Return how long a text takes where more of it may come before or after, seconds.
+# Return how many seconds a text takes as a part of a longer text.
 static func measure_text(alphabet, text):
 	var out = 0.0
 	for pair in Graphemes.split_words(alphabet, text):
@@ -277,7 +277,7 @@ static func measure_text(alphabet, text):
 	return out
 
 
-# Return the words of a text, one after the other. seconds: how long all of it takes, None for as long as its letters tell.
+# Return the words of a text, one after the other. seconds: how long all of it takes, None to estimate it from the letters.
 static func pace_text(alphabet, text, seconds):
 	var scale = 1.0 if seconds == null else seconds / Util.most(measure_text(alphabet, text), 0.001)
 	var at = 0.0
@@ -300,8 +300,7 @@ static func _measure_word(alphabet, word):
 	return Util.sum(found) / Graphemes.PACE
 
 
-# Return the words that letters make whose times are told one by one: a blank parts words, and so does each letter that is a
-# syllable.
+# Return the words of letters that have a time each. Blanks separate words, and so does each letter that is a syllable.
 static func join_letters(alphabet, letters):
 	var out = []
 	var parted = true
@@ -327,15 +326,15 @@ static func told_text(timing):
 	return Util.joined(found, " ")
 
 
-# Return how long a line lasts, to whole rows of a mouth's track, so that what is added to it later moves nothing. duration: of
-# its sound, None for as long as its words and shapes need.
+# Return how long a line lasts, rounded to whole rows of the mouth's track, so that later additions move nothing. duration: of its
+# sound, None for as long as its words and shapes need.
 static func timed_seconds(timing, duration):
 	var last = _end_of(timing)
 	return (int(ceil((last + Mouth.LATE if duration == null else Util.most(duration, last)) / Mouth.STEP - 1e-06)) * Mouth.STEP)
 
 
-# Return the mouth's pieces and the syllables of a line's words and shapes: shapes are the mouth's where any are told, words those
-# of gestures and blinks.
+# Return the mouth's pieces and the syllables of a line's words and shapes: the mouth follows the shapes if there are any;
+# gestures and blinks follow the words.
 static func timed_sounds(alphabet, timing):
 	var out = Graphemes.Spelled.new()
 	for word in timing.words:
@@ -361,7 +360,7 @@ static func timed_sounds(alphabet, timing):
 	return shown
 
 
-# Return when each mark is over: several at one time are the mouth's together.
+# Return when each mark ends: marks at the same time show together.
 static func _ends(marks):
 	var out = []
 	var end = 0.0
@@ -374,8 +373,8 @@ static func _ends(marks):
 	return Util.list(Util.backwards(out))
 
 
-# Return whether what is told of a line after its end is of the same line: it begins after the last word or shape that was told,
-# or tells all again with more behind it. Else somebody says something else under the same id.
+# Return whether a piece that comes after the end of a line belongs to the same line: it begins after the last known word or
+# shape, or repeats all with more behind it. Otherwise it is something else under the same id.
 static func tells_on(old, new):
 	if new.words.size() > 0 and old.words.size() > 0:
 		var first = new.words[0]
@@ -404,8 +403,9 @@ static func shifted(timing, by):
 	return LineTiming.new(Util.list(words), found)
 
 
-# Return what is told of a line later, when it is said: a piece that counts its times from its own beginning comes after what was
-# told, and what comes after its time is said at once, and so is what follows it. said: seconds of the line that are over.
+# Return a later piece of a line with the times at which it is said. A piece that counts from its own beginning follows the
+# earlier pieces. A piece that comes too late is said at once, and everything after it is delayed. said: seconds of the line that
+# are over.
 static func place_told(old, new, said):
 	var end = _end_of(old)
 	if restarts(old, new, said):
@@ -440,8 +440,7 @@ static func place_told(old, new, said):
 	return LineTiming.new(shifted(told, by).words, shifted(told, by).marks, old.later + by, shifted(told, by).paced)
 
 
-# Return whether what is told of a line is a piece of its own, which begins at 0: it lies where the line begins, and does not tell
-# that again.
+# Return whether a piece of a line counts its times from 0 again: it lies at the beginning of the line, but does not repeat it.
 static func restarts(old, new, said):
 	var again
 	if old.words.size() > 0 and new.words.size() > 0:
@@ -472,7 +471,7 @@ static func _end(word):
 	return word.start if word.end == null else word.end
 
 
-# Return when the last word or shape is over.
+# Return when the last word or shape ends.
 static func _end_of(timing):
 	var found = []
 	for word in timing.words:
@@ -484,8 +483,8 @@ static func _end_of(timing):
 	return end
 
 
-# Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the new begins;
-# of a word or a shape that has begun meanwhile the rest is said.
+# Return a line's timing with a later piece: the old timing stays up to `said` seconds, and up to the beginning of the new piece.
+# Of a word or shape that has begun meanwhile, the rest is said.
 static func extended(old, new, said):
 	var words = Util.list(old.words)
 	var found = []

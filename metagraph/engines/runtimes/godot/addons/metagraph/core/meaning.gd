@@ -1,4 +1,4 @@
-# What asks mean: requests of the layers, and what lasts (Borer et al., section 6 and figure 5).
+# The meaning of asks: requests of the layers, and lasting items (Borer et al., section 6 and figure 5).
 #
 # Translated from metagraph/playback/planning/meaning.py; change that, and translate anew.
 
@@ -16,8 +16,8 @@ const Util = preload("util.gd")
 const FOREVER = 1000000000.0  # seconds; a look that lasts until the next
 
 
-# An ask with every field that any has; `do` says which count. line: id; said: that line, None where there is none such. text:
-# what is said, or a block of BML. timing: when its words and shapes come.
+# An ask with the fields of all kinds of asks; `do` says which of them count. line: id; said: that line, None if there is none.
+# text: the words, or a block of BML. timing: the times of its words and shapes.
 class PlainAsk:
 	var do
 	var id
@@ -120,8 +120,8 @@ class PlainAsk:
 		self.more = more_
 
 
-# A line of dialogue. seconds: how long it is, None where nobody knows. asks: what it asks for while it is said, in seconds from
-# its start. valence, arousal, intensity: of the mood it is said in.
+# A line of dialogue. seconds: its length, None if unknown. asks: its own requests, in seconds from its start. valence, arousal,
+# intensity: of the mood it is said in.
 class SaidLine:
 	var text
 	var seconds
@@ -139,7 +139,7 @@ class SaidLine:
 		self.intensity = intensity_
 
 
-# A block of BML that is asked for: what it says becomes asks `<id>.1`, `<id>.2`, ...
+# A requested block of BML: its behaviours become asks `<id>.1`, `<id>.2`, ...
 class AskedBlock:
 	var id
 	var at
@@ -153,8 +153,7 @@ class AskedBlock:
 		self.text = text_
 
 
-# What an ask does to what is said. do: "interrupt", "pause", "resume" or "finish". what: the id of what is said, "" for all of
-# it.
+# An ask that steers speech. do: "interrupt", "pause", "resume" or "finish". what: the id of the speech, "" for all speech.
 class SteeringAsk:
 	var do
 	var id
@@ -168,9 +167,10 @@ class SteeringAsk:
 		self.priority = priority_
 
 
-# What asks mean, so far. graphs: of the layers, in their order. withdrawn: ids taken back; every one where it holds "". steered:
-# what is done to what is said, in turn. unknown: what an ask names that is not there: "action", "stance" or "line". Speeches may
-# overlap. fixed: seconds before which no gesture can begin that a line asks for, though the line itself may.
+# The meaning of asks, so far. graphs: of the layers, in their order. withdrawn: ids taken back; "" stands for all. steered: the
+# asks that steer speech, in order. unknown: the kind of thing that an ask names and that does not exist: "action", "stance" or
+# "line". Speeches may overlap. fixed: the earliest second at which a gesture of a line can begin; the line itself may begin
+# earlier.
 class Meaning:
 	var project
 	var graphs
@@ -227,7 +227,7 @@ class Meaning:
 		self.unknown = unknown_
 		self.fixed = fixed_
 
-	# Return what lasts.
+	# Return the track of lasting items.
 	func track():
 		return Track.Track.new(
 			Util.list(self.looks),
@@ -239,7 +239,7 @@ class Meaning:
 			Util.list(self.moods)
 		)
 
-	# Take what others mean, too.
+	# Add the meaning of other asks.
 	func take(other):
 		Util.extend(self.requests, other.requests)
 		Util.extend(self.looks, other.looks)
@@ -254,7 +254,7 @@ class Meaning:
 		for ident in other.withdrawn:
 			Util.add_to(self.withdrawn, ident)
 
-	# Tell that an ask was not understood.
+	# Report that an ask was not understood.
 	func refuse(ident, why, layer, at):
 		self.refused.append(MetaPlan.Report.new(ident, "not-understood", why, "arms" if layer == null else layer, at))
 
@@ -267,8 +267,8 @@ class Meaning:
 				break
 		return first
 
-	# Add what an ask means; return why it can mean nothing, "" where it does. ident, at, priority: its own, or what the line has
-	# made of them that asks for it. shift: seconds that line begins at, else 0.
+	# Add the meaning of an ask; return why it has none, "" if it has one. ident, at, priority: its own, or as the line changed
+	# them that it belongs to. shift: the second at which that line begins, else 0.
 	func add(ask, ident, at, priority, shift):
 		var where = "" if ask.layer == null else " in the %s layer" % [ask.layer]
 		var stroke = null if ask.stroke == null else ask.stroke + shift
@@ -406,7 +406,7 @@ class Meaning:
 			return "nothing is known of '%s'" % [ask.do]
 		return ""
 
-	# Nods are gestures tagged so; where none is, the likeliest of those called so, whatever stance it needs.
+	# Nods are gestures with that tag; if there is none, the likeliest one with that name, whatever stance it needs.
 	func head(ask, ident, at, priority):
 		var gestures = []
 		for x in self.graph_of("head").actions.values():
@@ -461,7 +461,7 @@ class Meaning:
 		))
 		return ""
 
-	# Something said: a line, with what it asks for meanwhile, or other words.
+	# Say a line, with its own requests, or other words.
 	func say(ask, ident, at, priority):
 		var line = ask.said
 		if ask.line != null and line == null:
@@ -508,7 +508,7 @@ class Meaning:
 		return ""
 
 
-# Take what an ask means, or refuse all of it. now: when it begins where it does not say; soon: when it is said, likewise.
+# Add the meaning of an ask, or refuse all of it. now: when it begins if it does not say; soon: the same for speech.
 static func understood(whole, ask, now, soon):
 	var one = Meaning.new(whole.project, whole.graphs, whole.alphabet, [], [], [], [], [], [], [], [], [], {}, [], [], "", now)
 	var at = (soon if ask.do == "say" else now) if ask.at == null else ask.at

@@ -1,4 +1,4 @@
-# Requests, meta actions and plans: what the planner takes and gives. All values; times are seconds.
+# Requests, meta actions and plans: what the planner takes and returns. All are values; times are seconds.
 #
 # Translated from metagraph/playback/plan.py; change that, and translate anew.
 
@@ -6,16 +6,16 @@ const ASKED = 1  # default priority of a request
 const WRITTEN = 0  # priority of what the Markov model writes
 
 
-# What an agent or animator asks for, at any level of abstraction.
+# A request of an agent or animator, at any level of abstraction.
 #
-# id: unique; it keys the random draws. start: seconds. duration: how long the activity is wanted, None for one action. action: id
-# of a specific action. tags: all of them must be on the action. limb: which arm. stance: id of the stance to go to (kind
-# "transition"). priority: higher wins. resume: whether, when something more important cuts it, its remainder goes on afterwards.
-# stroke: when a gesture's stroke should come; `start` is then the earliest it may begin. hold: seconds its hold should last, None
-# for as long as it was made. prepare: whether its preparation plays. among: ids of the only actions it may be, any where empty.
-# late: by how many seconds its stroke, or where none is asked for its start, may come late, 0 for on time or not at all; None for
-# as late as the settings allow. valence, arousal, intensity: of the mood it is played in, as in `mood.Mood`; None for as it is
-# then.
+# id: unique; it keys the random draws. start: seconds. duration: how long the activity should last, None for one action. action:
+# id of a specific action. tags: all of them must be on the action. limb: which arm. stance: id of the stance to go to (kind
+# "transition"). priority: higher wins. resume: whether the remainder plays afterwards if a more important request cuts it.
+# stroke: when a gesture's stroke should come; `start` is then the earliest it may begin. hold: seconds that its hold should last,
+# None for its length in the clip. prepare: whether its preparation plays. among: ids of the only actions it may be; empty for
+# any. late: by how many seconds its stroke may come late, or its start if it has no stroke; 0 for on time or not at all, None for
+# as late as the settings allow. valence, arousal, intensity: the mood it is played in, as in `mood.Mood`; None for the mood at
+# that time.
 class MetaRequest:
 	var id
 	var layer
@@ -79,7 +79,7 @@ class MetaRequest:
 		self.intensity = intensity_
 
 
-# Where writing stands: before meta action `number`, in state number `state` (-1: none yet), which ended at `time` seconds.
+# Where writing continues: before meta action `number`, after state number `state` (-1: none yet), which ended at `time` seconds.
 class Cursor:
 	var number
 	var state
@@ -91,16 +91,16 @@ class Cursor:
 		self.time = time_
 
 
-# A request placed in time: `start`..`end` is the window it may use. written: by the Markov model, not asked for. part: 0 for the
-# request itself, n for its n-th remainder after a cut.
+# A request placed in time: `start`..`end` is the window it may use. written: whether the Markov model wrote it, instead of a
+# request. part: 0 for the request itself, n for its n-th remainder after a cut.
 class MetaAction:
 	var request
 	var start
 	var end
 	var part
 	var written
-	var rank  # How important it is: its request's priority; what a model wrote gives way to all that is asked for.
-	var key  # What keys this meta action's random draws.
+	var rank  # Its importance: its request's priority. What a model wrote gives way to all requests.
+	var key  # The key of this meta action's random draws.
 
 	func _init(request_, start_, end_, part_ = 0, written_ = false):
 		self.request = request_
@@ -115,10 +115,10 @@ class MetaAction:
 # One action in the plan. It plays its clip from `entry` on during `start`..`end`, at `tempo` times its own speed but for its
 # hold.
 #
-# hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched. blend_in,
-# blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the meta
-# action it realises. extent: how large it is played, a factor of its turns away from the stance. cycle_from, cycle_to: clip
-# seconds between which it repeats; 0, 0 where it plays once.
+# hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 if it is not stretched. blend_in, blend_out:
+# seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the meta action it
+# realises. extent: how large it is played, a factor of its turns away from the stance. cycle_from, cycle_to: clip seconds between
+# which it repeats; 0, 0 if it plays once.
 class Cue:
 	var action
 	var start
@@ -136,7 +136,7 @@ class Cue:
 	var tempo
 	var cycle_from
 	var cycle_to
-	var repeats  # Whether it plays a cycle again and again.
+	var repeats  # Whether it repeats a cycle.
 
 	func _init(
 		action_,
@@ -194,9 +194,8 @@ class Rest:
 const TEMPORAL = {"late": true, "cut": true, "resumed": true, "past": true}  # told by temporal replanning, once
 
 
-# What became of a meta action that was not simply played as asked. played: whether something of it still plays. late: by how many
-# seconds it comes late, or would have come, where it said how late it may. by: key of the meta action whose action serves it,
-# too.
+# The result of a meta action that does not play exactly as requested. played: whether a part of it still plays. late: by how many
+# seconds it comes late, or would have come, if it said how late it may. by: key of the meta action whose action serves it, too.
 class Report:
 	var request
 	var outcome
@@ -220,8 +219,8 @@ class Report:
 		self.by = by_
 
 
-# What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses: how often each action was
-# used. recent: the actions used last, by `remembering.node`, the latest at the end. ended: when each ended last.
+# What further planning needs from forgotten cues. free: when the last one ended; stance: in which stance. uses: how often each
+# action was used. recent: the actions used last, by `remembering.node`, the latest at the end. ended: when each ended last.
 class Past:
 	var free_
 	var stance
@@ -239,8 +238,8 @@ class Past:
 
 # cues never overlap and ascend; rests ascend by fade_start, the first covering everything before.
 #
-# past: what came before the first cue, where that was forgotten. cursor: where the Markov model writes on. written: what it wrote
-# for later, as it wrote it: each extension fits it in anew, so that it does not matter when it was first seen.
+# past: what came before the first cue, if that was forgotten. cursor: where the Markov model continues to write. written: what it
+# wrote for later, unchanged: each extension fits it in again, so that it does not matter when it was written.
 class LayerPlan:
 	var layer
 	var metas

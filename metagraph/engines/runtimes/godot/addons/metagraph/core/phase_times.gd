@@ -24,6 +24,6 @@ class Phases:
 		self.relax = relax_
 		self.end = end_
 
-	# Return where a gesture begins that skips its preparation: as late as it can blend in and be ready.
+	# Return where a gesture begins if it skips its preparation: as late as it can blend in and be ready.
 	func skip(blend_in):
 		return Util.most(self.start, self.ready - Util.most(blend_in, LEAST_BLEND))

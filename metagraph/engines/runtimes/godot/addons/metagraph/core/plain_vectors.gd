@@ -1,5 +1,5 @@
-# Vectors and turns as plain tuples, for what is worked out one pose at a time, the same in all languages. Vectors are x, y, z;
-# quaternions xyzw, of length 1.
+# Vectors and rotations as plain tuples, for code that computes one pose at a time, the same in all languages. Vectors are x, y,
+# z; quaternions xyzw, of length 1.
 #
 # Translated from metagraph/motion/plain_vectors.py; change that, and translate anew.
 
@@ -59,7 +59,7 @@ static func between(a, b):
 	return unit_turn([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx, 1.0 + along])
 
 
-# Return how long a vector is.
+# Return the length of a vector.
 static func length(v):
 	var both = v
 	var x = both[0]
@@ -68,7 +68,7 @@ static func length(v):
 	return sqrt(x * x + y * y + z * z)
 
 
-# Return a vector of length 1 in a direction; of no length where there is none.
+# Return a vector of length 1 in the same direction; the zero vector stays as it is.
 static func unit(v):
 	return scaled(v, 1.0 / Util.most(length(v), 1e-12))
 
@@ -84,7 +84,7 @@ static func unit_turn(q):
 	return [x * k, y * k, z * k, w * k]
 
 
-# Return the turn back.
+# Return the inverse rotation.
 static func back(q):
 	var both = q
 	var x = both[0]

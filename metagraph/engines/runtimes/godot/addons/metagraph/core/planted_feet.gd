@@ -1,8 +1,8 @@
-# Find where the feet of a standing body should be while the body's layer blends: they do not glide from one pose to the other but
-# are held, and moved one after the other in a step.
+# Find where the feet of a standing body should be while the body's layer blends. They do not glide from one pose to the other:
+# they are held, and move one after the other in a step.
 #
-# A clip says where its feet are, and when they stand. A pose is a function of plan and time only, so each step's time, order and
-# height follow from the two poses that it joins.
+# A clip gives the positions of its feet, and when they stand. A pose depends only on plan and time, so each step's time, order
+# and height follow from the two poses that it joins.
 #
 # Translated from metagraph/playback/posing/planted_feet.py; change that, and translate anew.
 
@@ -99,8 +99,8 @@ static func _stands(track, seconds):
 	return goals[0].planted >= 1.0 and goals[1].planted >= 1.0
 
 
-# Return both feet on their way, of which `passed` of its `seconds` have passed. `first` and `last` say where they are when it
-# begins and ends, which gives the order and size of the steps.
+# Return both feet during a step, after `passed` of its `seconds`. `first` and `last` are their places when it begins and ends,
+# which decide the order and size of the steps.
 static func _stepped(height, before, after, first, last, passed, seconds):
 	if before.size() == 0 or after.size() == 0 or first.size() == 0 or last.size() == 0:
 		return []

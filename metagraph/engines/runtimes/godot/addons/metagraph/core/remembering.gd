@@ -1,4 +1,4 @@
-# What is remembered of what was played: how often an action was, lately, and until when.
+# What the planner remembers of played actions: how often each played lately, and until when.
 #
 # Translated from metagraph/playback/planning/remembering.py; change that, and translate anew.
 
@@ -6,19 +6,19 @@ const Util = preload("util.gd")
 const REMEMBERED = 32  # draws of a stance and kind that spacing can look back on
 
 
-# Return what draws of a stance and kind are remembered under.
+# Return the key under which draws of a stance and kind are remembered.
 static func node(stance, kind):
 	return "%s %s" % [kind, stance]
 
 
-# Whether so many other draws came after an action's last one.
+# Return whether at least this many other draws came after an action's last one.
 static func rested(recent, ident, needed):
 	if needed <= 0:
 		return true
 	return needed <= REMEMBERED and not Util.part(recent, Util.most(0, recent.size() - needed), recent.size()).has(ident)
 
 
-# Note that a cue was played: how often its action was, lately, and until when.
+# Note that a cue was played: count its action, and note when it ended.
 static func remember(cue, uses, recent, ended):
 	var ident = cue.action.id
 	var place = node(cue.stance, cue.action.kind)

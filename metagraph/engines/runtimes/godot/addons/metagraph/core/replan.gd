@@ -1,7 +1,7 @@
 # Temporal replanning: meta actions that may clash become a meta plan that does not (Borer et al., section 6.1).
 #
-# Greedy, by start time and then priority. The running action is never touched. Where two overlap, the more important one keeps
-# its time; the other is delayed past it, or cut where it begins, and then goes on with its remainder if it asked to.
+# Greedy, by start time and then priority. The running action is never touched. If two overlap, the more important one keeps its
+# time. The other is delayed past it, or cut where it begins; its remainder then plays afterwards if the request says so.
 #
 # Translated from metagraph/playback/planning/replan.py; change that, and translate anew.
 
@@ -9,8 +9,8 @@ const MetaPlan = preload("meta_plan.gd")
 const Util = preload("util.gd")
 
 
-# Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those that say how
-# late they may be are judged where it shows how late they are.
+# Let new requests wait until `free` seconds, the end of the running action, and drop those that would wait too long. Requests
+# that say how late they may be are judged later, when their lateness is known.
 static func delay(asked, free_, settings):
 	var metas = []
 	var reports = []
@@ -30,9 +30,9 @@ static func delay(asked, free_, settings):
 
 # Return the meta plan, ascending and without overlaps, and what became of the rest.
 #
-# What is asked for is placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions that do not
-# overlap come back as they are, so a plan that is placed again stays as it is. Of equal start and priority, the id that sorts
-# first goes first.
+# Requests are placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions that do not overlap stay
+# as they are, so a plan that is placed again does not change. If start and priority are equal, the id that sorts first goes
+# first.
 static func replan(metas, settings, busy = -INF):
 	var every = Util.list(metas)
 	var found = []
@@ -55,7 +55,7 @@ static func replan(metas, settings, busy = -INF):
 	return [Util.ordered(placed + written, keys), reports + told]
 
 
-# Return what is left of what a model wrote beside what is placed: the first stretch of each that is long enough.
+# Return the parts of written meta actions that fit beside the placed ones: the first stretch of each that is long enough.
 static func _fitted(written, placed, shortest, busy):
 	var out = []
 	var reports = []
@@ -96,7 +96,7 @@ static func _fitted(written, placed, shortest, busy):
 	return [out, reports]
 
 
-# Return what decides who is placed first.
+# Return the sort key that decides which is placed first.
 static func _order(meta):
 	return [meta.start, -meta.request.priority, meta.request.id, meta.part]
 
@@ -164,7 +164,7 @@ static func _placed(metas, settings):
 	return [placed, reports]
 
 
-# Return a meta action from `free` on.
+# Return a meta action that begins at `free` instead.
 static func _after(meta, free_):
 	return MetaPlan.MetaAction.new(meta.request, free_, free_ + (meta.end - meta.start), meta.part, meta.written)
 

@@ -15,11 +15,11 @@ const Vigour = preload("vigour.gd")
 const PhaseTimes = preload("phase_times.gd")
 const Phases = preload("phases.gd")
 const Util = preload("util.gd")
-const ON_TIME = 0.1  # seconds by which what is asked for may begin later than that, and is on time
+const ON_TIME = 0.1  # seconds by which a request may begin later and still be on time
 const LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
 
 
-# One action of a chain: who may play it, and for a transition on the way the stance it leads to.
+# One action of a chain: the candidates for it and, for a transition on the way, the stance it leads to.
 class SamplingStep:
 	var candidates
 	var hop
@@ -29,12 +29,12 @@ class SamplingStep:
 		self.hop = hop_
 
 
-# One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
+# One layer being planned, cue after cue. It changes while planning, and never leaves the planner.
 #
 # uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of meta
-# actions whose chain of transitions plays already. served: keys of those that another's action serves, too. moods: what it is in
-# the mood for, and when. candidates: the actions of each `node` that may be drawn, as far as they were asked for. acted: when the
-# last action ended.
+# actions whose chain of transitions already plays. served: keys of those that the action of another one serves, too. moods: the
+# mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far. acted: when the last
+# action ended.
 class Performer:
 	var project
 	var graph
@@ -88,7 +88,7 @@ class Performer:
 		self.served = served_ if served_ != null else {}
 		self.candidates = candidates_ if candidates_ != null else {}
 
-	# Take a cue as played.
+	# Note that a cue is played.
 	func note(cue, then):
 		self.cues.append(cue)
 		self.free_ = cue.end
@@ -96,7 +96,7 @@ class Performer:
 		self.stance = then
 		Remembering.remember(cue, self.uses, self.recent, self.ended)
 
-	# When the next action may begin at the earliest.
+	# The earliest time at which the next action may begin.
 	func ready():
 		return self.free_ + (self.project.settings.rest if self.ended.size() > 0 else 0.0)
 
@@ -108,7 +108,7 @@ class Performer:
 		self.rests.append(MetaPlan.Rest.new(stance, loop, 0.0, 0.0, 0.0))
 		return true
 
-	# Realise what starts before `end` of a conflict-free meta plan, in order.
+	# Realise in order those meta actions of a conflict-free meta plan that start before `end`.
 	func perform(metas, end):
 		for bound in Bounds.bounds(metas):
 			var meta = bound.meta
@@ -188,8 +188,8 @@ class Performer:
 		for one in cues:
 			self._keep(one)
 
-	# Return those that come least late, if that is not too late; of them those that leave most of what follows its time, and
-	# serve most of it.
+	# Return the candidates that come least late, if that is not too late; among them those that leave the following requests the
+	# most time and serve the most of them.
 	func _timely(bound, fitting, now):
 		var meta = bound.meta
 		var request = meta.request
@@ -250,7 +250,7 @@ class Performer:
 					return over
 		return timely
 
-	# Return what a request that comes late waits for.
+	# Return the reason why a request comes late.
 	func _cause(request, now):
 		if now <= request.start + CueShapes.FITS:
 			return "its own preparation"
@@ -258,8 +258,7 @@ class Performer:
 			return "'%s', which plays until %.2f s" % [self.cues[-1].action.name, self.free_]
 		return "what comes before it" if self.cues.size() > 0 else "the time it became known at"
 
-	# Return when something that is asked for has to begin at the latest, to be on time; never in the past, where nothing meets
-	# it.
+	# Return the latest time at which a requested action has to begin to be on time; never in the past.
 	func _latest(request):
 		if request.stroke == null:
 			return request.start
@@ -275,13 +274,13 @@ class Performer:
 				least = Util.least(least, lead + Mood.drag(lead, speed))
 		return request.stroke - least
 
-	# Return when what follows an action could begin at the earliest.
+	# Return the earliest time at which the next action could begin after this one.
 	func _over(action, request, now):
 		var shape = self._shape(action, request, now, self._mood(request, now))
 		return shape.start + CueShapes.hurried(self.project, action, shape) + self.project.settings.rest - CueShapes.FITS
 
-	# Return when an action that is to be played through is left nevertheless: early enough for the first of what follows that can
-	# be in time then, late enough for its own stroke; infinity for never.
+	# Return when an action that should play to its end is left early all the same: early enough for the first following request
+	# that can then be in time, late enough for its own stroke; infinity for never.
 	func _until(action, shape, bound):
 		if bound.after.size() == 0:
 			return INF
@@ -293,8 +292,8 @@ class Performer:
 				return Util.most(soonest, Bounds.begins(other) - rest)
 		return INF
 
-	# Leave the running action early for the first of what is asked for that can be in time then, and where it was `stopped` in
-	# any case. What a model wrote, or is less important, is left at once, the rest where its retraction begins.
+	# Leave the running action early for the first request that can then be in time, or if it was `stopped`. An action that a
+	# model wrote, or that is less important, is left at once; others are left where their retraction begins.
 	func make_way(running, asked, now, stopped):
 		if stopped:
 			self.retract(now)
@@ -352,7 +351,7 @@ class Performer:
 				self.ended[cue.action.id] = end
 			return
 
-	# Leave the running action: it goes back to its stance from where it is. A transition ends where it leads.
+	# Leave the running action: it returns to its stance from where it is. A transition ends in the stance it leads to.
 	func retract(now):
 		var cue = self.cues[-1]
 		var end = now + CueShapes.STOPPED
@@ -379,14 +378,14 @@ class Performer:
 		self.free_ = end
 		self.ended[cue.action.id] = end
 
-	# Return when an action may be drawn again.
+	# Return the time from which an action may be drawn again.
 	func _cooled(action):
 		if action.cooldown > 0 and self.ended.has(action.id):
 			return self.ended[action.id] + action.cooldown
 		return -INF
 
-	# Return each action in turn: the transitions to get there, then the action itself; None if impossible or needless, or where
-	# the model wrote it and nothing is rested enough.
+	# Return each action in turn: the transitions to get there, then the action itself; None if it is impossible or not needed, or
+	# if the model wrote it and every candidate played too recently.
 	func _steps(meta, now):
 		var request = meta.request
 		var graph = self.graph
@@ -526,8 +525,8 @@ class Performer:
 			at = following
 		return steps
 
-	# Return the stances after the current one on the shortest way of transitions that can play, the goal last; none where there
-	# is no way. Among equally short ones that whose transitions were placed first.
+	# Return the stances after the current one on the shortest way of transitions that can play, the goal last; empty if there is
+	# no way. Among equally short ways, the one whose transitions were placed first.
 	func _chain(goal):
 		var before = {self.stance: ""}
 		var queue = [self.stance]
@@ -551,7 +550,7 @@ class Performer:
 			step = before[step]
 		return Util.list(Util.backwards(way))
 
-	# Whether an action leaves the layer in a stance that can rest.
+	# Return whether an action leaves the layer in a stance that has a loop.
 	func _arrives(action):
 		var end = action.end_stance
 		if action.kind != "transition":
@@ -565,7 +564,7 @@ class Performer:
 	func _shape(action, request, now, mood):
 		return CueShapes.shape_of(self.project, action, request, now, self._tempo(action, mood))
 
-	# Return the mood that something asked for is played in from `at` on, or at its stroke.
+	# Return the mood in which a request is played from `at` on, or at its stroke.
 	func _mood(request, at):
 		if request == null:
 			return Mood.mood_at(self.moods, at)
@@ -574,12 +573,12 @@ class Performer:
 			return mood
 		return Mood.changed(mood, request.valence, request.arousal, request.intensity)
 
-	# Return how fast an action is played, 1 where it was made for the mood.
+	# Return the speed of an action in a mood, 1 if it was made for the mood.
 	func _tempo(action, mood):
 		return 1.0 if (mood.neutral or Mood.made_for(mood, action.tags)) else Mood.tempo(mood)
 
-	# Return how large an action is played. Those that move feet or leave for another stance, touch something or were made for the
-	# mood are played as they were made.
+	# Return the extent of an action in a mood. Actions that move the feet, lead to another stance, touch something or were made
+	# for the mood keep their extent.
 	func _extent(action, mood):
 		if self.graph.layer == "body" or action.kind == "transition" or mood.neutral:
 			return 1.0
@@ -587,8 +586,8 @@ class Performer:
 			mood
 		)
 
-	# Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood and variety favour, leaving out those used too recently as
-	# long as any others are left.
+	# Draw with p_k ~ likelihood_k / max(c_k, 1), times the factors of mood and variety. Actions used too recently are left out as
+	# long as others are left.
 	func _draw(candidates, key, now, mood):
 		var left = self._spaced(candidates)
 		if left.size() == 1:
@@ -614,7 +613,7 @@ class Performer:
 				break
 		return first
 
-	# Return how much likelier variety makes an action.
+	# Return the factor by which variety changes an action's likelihood.
 	func _variety(action, now):
 		var variety = self.project.settings.variety
 		if variety <= 0 or action.kind == "transition" or not self.ended.has(action.id):
@@ -622,7 +621,7 @@ class Performer:
 		var needed = Director.repeat_interval(action.kind, Prominence.measure_prominence(self.project, action)) * variety
 		return Director.freshness(now - self.ended[action.id], needed)
 
-	# Return those that may be done of one's own accord; see `director`.
+	# Return the actions that the character may do by itself; see `director`.
 	func _fresh(meta, candidates, now):
 		var variety = self.project.settings.variety
 		var layer = self.graph.layer
@@ -662,7 +661,7 @@ class Performer:
 				latest = Util.most(latest, end)
 		return latest
 
-	# Return whether something that stands out was done since a time.
+	# Return whether an act that stands out was done since a time.
 	func _shown(since):
 		for ident in self.ended:
 			var end = self.ended[ident]
@@ -673,7 +672,7 @@ class Performer:
 				return true
 		return false
 
-	# Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on.
+	# Leave out actions that need more other actions before they play again. If nothing is left, all need one less, and so on.
 	func _spaced(candidates):
 		var default = 1 if self.project.settings.never_twice else 0
 		var first = candidates[0]
@@ -709,7 +708,7 @@ class Performer:
 				used += 1
 		return alpha * used
 
-	# hops: whether it is a transition on the way to what is asked for.
+	# hops: whether it is a transition on the way to the requested action.
 	func _cue(action, shape, bound, hops, stance, mood):
 		var length = shape.length
 		var into = Util.most(0.0, action.timing.blend_in)
@@ -755,9 +754,9 @@ class Performer:
 		self.note(cue, cue.then)
 		var loop = self.loop(cue.then, cue.meta)
 		if loop != null:
-			# The loop begins anew under the action, so that the action's last pose meets the loop's first.
-			# Where the action leaves joints alone the change shows, and takes its time: a transition all of
-			# its own.
+			# The loop begins again under the action, so that the action's last pose meets the loop's first.
+			# On joints that the action does not move, the change shows. It takes its time there, like a
+			# transition.
 			var partial = cue.action.limb != "both" or cue.action.joints.size() > 0 or cue.action.joint_weights.size() > 0
 			var begin = cue.start + cue.blend_in
 			var until = cue.end - cue.blend_out
@@ -767,7 +766,7 @@ class Performer:
 				begin = Util.most(cue.start, until - fade)
 			self.rests.append(MetaPlan.Rest.new(cue.then, loop, until, begin, fade))
 
-	# Return one of a stance's loops, drawn by likelihood; None where it has none.
+	# Return one of a stance's loops, drawn by likelihood; None if it has none.
 	func loop(stance, key):
 		var loops = self.graph.of(stance, "stance")
 		if loops.size() == 1:
@@ -786,7 +785,7 @@ class Performer:
 				break
 		return first
 
-	# Where a stance has several loops, change between them in long rests, at a loop's end.
+	# Change between the loops of a stance in long rests, at the end of a loop.
 	func vary_rests(end):
 		var out = []
 		for place in range(self.rests.size()):
@@ -826,7 +825,7 @@ class Performer:
 		))
 
 
-# Return the performer that stands where cues have been played after a past.
+# Return the performer as it is after a past and the cues that played since.
 static func performer_after(project, graph, seed_, begin, past, cues, moods):
 	var stance = past.stance if graph.stances.has(past.stance) else begin
 	var out = Performer.new(

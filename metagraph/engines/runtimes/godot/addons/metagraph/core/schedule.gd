@@ -1,7 +1,8 @@
-# When the life layers do what: drawn from the seed, event by event, then pure in time.
+# The events of the life layers: drawn from the seed one by one, and then a function of time.
 #
-# Each event depends only on the one before it and on what is asked meanwhile, and its chance on its number. So a schedule grows
-# as a plan does: what has begun stays, tick by tick gives what one call gives, and what lies behind can be forgotten.
+# Each event depends only on the previous one and on the requests meanwhile; its random draw depends on its number. So a schedule
+# grows as a plan does: events that have begun stay, many short extensions give the same as one long one, and past events can be
+# forgotten.
 #
 # Translated from metagraph/playback/life/schedule.py; change that, and translate anew.
 
@@ -42,12 +43,13 @@ const BREATHES_IN = 0.55  # seconds
 const STRETCH = 0.5
 
 
-# Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's rows stand in the order given here.
+# Everything that the life layers do by themselves from 0 to `end` seconds, in lanes. The columns of a lane's rows are listed
+# here.
 #
-# modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length s, depth. aversions:
-# end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up, degrees. blinks: 0 of
-# itself, 1 on a stressed syllable, 2 asked for. swells, emphases: of the face (`expressions`). drawn: seconds up to which the
-# lanes are filled; the rest is what they were drawn from.
+# modes: index in MODES. moods: valence, arousal, intensity. targets: what the gaze looks at. breaths: length s, depth. aversions:
+# end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up, degrees. blinks: 0
+# spontaneous, 1 on a stressed syllable, 2 requested. swells, emphases: of the face (`expressions`). drawn: seconds up to which
+# the lanes are filled; the rest is what they were drawn from.
 class Schedule:
 	var end
 	var drawn
@@ -98,7 +100,7 @@ class Schedule:
 		self.voices = voices_
 		self.seed_ = seed_
 
-	# Return the schedule without what ended before `seconds`; what is drawn on from it stays as it would have been.
+	# Return the schedule without events that ended before `seconds`; later draws do not change.
 	func since(seconds):
 		var breaths = self.breaths.since(seconds)
 		var aversions = self.aversions.since(seconds)
@@ -146,9 +148,9 @@ class Schedule:
 		)
 
 
-# Return the schedule to `end` seconds. What `before` holds that begins before `now` stays exactly as it was.
+# Return the schedule to `end` seconds. Events of `before` that begin before `now` stay exactly as they were.
 #
-# What it holds for later is kept, too, where nothing it was drawn from has changed.
+# Its later events stay, too, if nothing that they were drawn from has changed.
 static func schedule(life, track, voices, seed_, end, before, now):
 	if not life.on:
 		return Schedule.new(
@@ -224,7 +226,7 @@ static func schedule(life, track, voices, seed_, end, before, now):
 	)
 
 
-# Return "" where nothing a schedule was drawn from has changed, "places" where only those have, else "all".
+# Return "" if nothing that a schedule was drawn from has changed, "places" if only places have, else "all".
 static func _change(before, life, track, voices, seed_):
 	if before.track == null or before.seed_ != seed_ or not Life.is_same_life(before.life, life):
 		return "all"
@@ -235,8 +237,8 @@ static func _change(before, life, track, voices, seed_):
 	return "places" if before.track.draws_like(track) else "all"
 
 
-# One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks change; manners: what mode
-# and mood make of the amounts from each on; strict: 1 where the look then is, else 0. phrases: when the character begins to
+# One extension: lanes filled from `cut` to `drawn` seconds. edges: when modes, moods or strict looks change; manners: the factors
+# of the amounts from each edge on; strict: 1 if the look is strict from there on, else 0. phrases: when the character begins to
 # speak.
 class LifeDraw:
 	var life
@@ -285,7 +287,7 @@ class LifeDraw:
 		self.strict = strict_ if strict_ != null else []
 		self.phrases = phrases_ if phrases_ != null else []
 
-	# Lay modes, moods and strict looks out in one row of segments.
+	# Combine modes, moods and strict looks into one list of segments.
 	func begin(cut):
 		self.cut = cut
 		var talks = []
@@ -316,21 +318,21 @@ class LifeDraw:
 			self.manners.append(Wanted.ways_in(ways, Mood.Mood.new(felt[0], felt[1], felt[2])))
 			self.strict.append(1 if self.targets[look].strict else 0)
 
-	# Return what keys the chances of an event: those of `chance_of`, 0..1, without the ends.
+	# Return the key of an event's random numbers, for `chance_of`.
 	func key(what, number):
 		return Choice.keyed(self.seed_, [what, str(number)])
 
-	# Return the place of the segment that a time is in.
+	# Return the index of the segment that contains a time.
 	func place_at(seconds):
 		return Util.most(0, Util.right_of(self.edges, seconds) - 1)
 
-	# Return whether the character thinks at a time: then it looks up and aside, never down.
+	# Return whether the character is thinking at a time: then it looks up and aside, never down.
 	func thinks(seconds):
 		var mode = Util.most(0, Util.right_of(self.modes.times, seconds) - 1)
 		return Words.MODES[int(self.modes.rows[mode][0])] == "thinking"
 
-	# Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each segment; infinity where it
-	# is not before the end.
+	# Return when `need` seconds have passed since `seconds` on a clock that runs at these rates, one for each segment; infinity
+	# if that is after the end.
 	func after(seconds, need, rates):
 		var at = seconds
 		var left = need
@@ -345,7 +347,7 @@ class LifeDraw:
 			place += 1
 		return INF
 
-	# Each breath follows the one before; the first began before time 0, so that not everybody breathes alike.
+	# Draw breaths, each after the previous one. The first began before time 0, so that characters do not breathe in step.
 	func breaths(lane):
 		var times = []
 		var rows = []
@@ -388,7 +390,7 @@ class LifeDraw:
 		var wanted = self.phrases[place] - BREATHES_IN - at
 		return wanted if wanted <= (1.0 + STRETCH) * length else length
 
-	# The eyes' small jumps.
+	# Draw the small jumps of the eyes.
 	func saccades(lane):
 		if self.life.saccade_rate <= 0 or self.calm <= 0:
 			return lane
@@ -413,7 +415,7 @@ class LifeDraw:
 			rows.append([size * sin(turn + PI / 2.0), UPRIGHT * size * sin(turn)])
 			number += 1
 
-	# Looks away for a moment.
+	# Draw short looks away.
 	func aversions(lane):
 		var life = self.life
 		if life.aversion_rate <= 0 or life.aversion_length <= 0 or life.aversion_angle <= 0 or self.calm <= 0:
@@ -449,7 +451,7 @@ class LifeDraw:
 			rows.append([last, size * sin(turn + PI / 2.0), Util.absolute(up) if self.thinks(at) else up])
 			number += 1
 
-	# Blinks of themselves, on stressed syllables and asked for, whichever comes first.
+	# Draw blinks: spontaneous ones, those on stressed syllables and requested ones, in the order in which they come.
 	func blinks(lane):
 		var life = self.life
 		var shut = life.blink_close + life.blink_open
@@ -520,7 +522,7 @@ class LifeDraw:
 		return out
 
 
-# Return what extends a schedule from `cut` to `drawn` seconds, with modes and looks in place.
+# Return the draw that extends a schedule from `cut` to `drawn` seconds, with modes and looks filled in.
 static func _draw(life, track, voices, seed_, cut, drawn, before):
 	var modes = before.modes.until(cut)
 	var last = int(modes.rows[-1][0]) if modes.rows.size() > 0 else -1

@@ -1,4 +1,4 @@
-# What of an utterance was spoken until a moment, for the history that a language model goes on from.
+# The part of an utterance that was spoken until a moment, for the history from which a language model continues.
 #
 # Translated from metagraph/speech/spoken_so_far.py; change that, and translate anew.
 
@@ -9,8 +9,8 @@ const WordGestures = preload("word_gestures.gd")
 const Util = preload("util.gd")
 
 
-# Return what of an utterance was spoken until `seconds`, up to the word that was begun, and that word; "" where nothing was.
-# said: everything, by start.
+# Return the part of an utterance that was spoken until `seconds`, up to the word that was begun, and that word; "" if nothing was
+# spoken. said: all speeches, by start.
 static func spoken_until(alphabet, said, ident, seconds):
 	var text = ""
 	var last = ""
@@ -30,7 +30,7 @@ static func spoken_until(alphabet, said, ident, seconds):
 	return [alphabet.stripped(text), last]
 
 
-# Return the pieces of the utterance of an id that was said last; one that goes on after a pause is one.
+# Return the pieces of the last utterance with an id; one that continues after a pause is one utterance.
 static func _pieces(said, ident, seconds):
 	var out = []
 	for piece in said:
@@ -44,7 +44,7 @@ static func _pieces(said, ident, seconds):
 	return out
 
 
-# Return what of one piece was spoken in its first `seconds`, and the last word of that.
+# Return the part of one piece that was spoken in its first `seconds`, and its last word.
 static func _spoken_of(alphabet, piece, seconds):
 	var letters = alphabet.letters(piece.text)
 	var words = []
@@ -79,12 +79,12 @@ static func _spoken_of(alphabet, piece, seconds):
 	return [Util.joined(Util.part(letters, 0, stop), ""), whole[-1].text if whole.size() > 0 else begun[-1]]
 
 
-# Whether a letter behind a word is no mark of it.
+# Return whether a letter after a word is not a mark that belongs to it.
 static func _parts(alphabet, letter):
 	return alphabet.stripped(letter) == "" or WordGestures.telling(alphabet, [letter])
 
 
-# Return the place behind a word in a text, from `first` on; -1 where it is not there.
+# Return the index after a word in a text, searching from `first`; -1 if it is not there.
 static func _end_of_letters(letters, word, first):
 	for start in range(first, letters.size() - word.size() + 1):
 		var are_all = true

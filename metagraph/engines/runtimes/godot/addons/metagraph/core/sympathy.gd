@@ -1,10 +1,10 @@
-# How who listens takes up the mood of who talks with it, and laughs along: moods told for it, which posture, face and life then
-# show as any others.
+# How a listener takes up the mood of its partner and laughs along. The result is moods, which posture, face and life show like
+# any others.
 #
 # What is known and followed here: faces take up others' expressions weakly, within about a second of seeing them (Dimberg 1982),
 # as far as they are friendly: happy and sad ones, hardly angry ones (Hess and Fischer 2013); laughter brings smiles and laughter,
-# often but not always (Provine 1992). How much, how late and how often is ours. Neutral moods are not taken up: who has a mood of
-# its own keeps it before a calm face.
+# often but not always (Provine 1992). How much, how late and how often is ours. Neutral moods are not taken up: a character with
+# a mood of its own keeps it in front of a calm face.
 #
 # Translated from metagraph/playback/life/sympathy.py; change that, and translate anew.
 
@@ -22,7 +22,7 @@ const LAUGH_VALENCE = 0.9
 const LAUGH_AROUSAL = 0.45
 
 
-# A laugh of the other's, seconds.
+# A laugh of the other character, in seconds.
 class Laugh:
 	var start
 	var end
@@ -32,7 +32,7 @@ class Laugh:
 		self.end = end_
 
 
-# Return the mood of who sees another's: `share`, 0..1, of the way there; its own before a neutral one.
+# Return the mood of a character that sees another's: `share`, 0..1, of the way to it; its own mood if the other's is neutral.
 static func taken_up(own, other, share):
 	if other.valence == 0 and other.arousal == 0:
 		return own
@@ -44,8 +44,8 @@ static func taken_up(own, other, share):
 	)
 
 
-# Return what is told of the mood of who sees the other's from 0 to `end` seconds, by start. own: its mood without; who: a key of
-# the other, which draws how late each is taken up.
+# Return the moods of a character that sees the other's, from 0 to `end` seconds, by start. own: its mood without the other; who:
+# the key of the other, from which each delay is drawn.
 static func moods_taken_up(own, other, end, share, seed_, who):
 	var edges = Mood.mood_edges(other, 0.0, end)
 	for edge in Mood.mood_edges(own, 0.0, end):
@@ -66,7 +66,7 @@ static func moods_taken_up(own, other, end, share, seed_, who):
 	return out
 
 
-# Return what is told of the mood of who laughs along with `share`, 0..1, of the other's laughs, by start.
+# Return the moods of a character that laughs along with `share`, 0..1, of the other's laughs, by start.
 static func laughs_along(own, laughs, share, seed_, who):
 	var out = []
 	for n in range(laughs.size()):

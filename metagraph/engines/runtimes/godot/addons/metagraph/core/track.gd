@@ -1,4 +1,4 @@
-# All that was asked for and lasts, in order; see `items`. Times are seconds.
+# All requests that last, in order; see `items`. Times are seconds.
 #
 # Translated from metagraph/playback/life/track.py; change that, and translate anew.
 
@@ -7,7 +7,7 @@ const Mood = preload("mood.gd")
 const Util = preload("util.gd")
 
 
-# All of it, each by start. Speeches do not overlap.
+# All lasting requests, each kind sorted by start. Speeches do not overlap.
 class Track:
 	var looks
 	var speeches
@@ -26,7 +26,7 @@ class Track:
 		self.stays = stays_ if stays_ != null else []
 		self.moods = moods_ if moods_ != null else []
 
-	# Return the ids of all of it.
+	# Return the ids of all items.
 	func idents():
 		var out = []
 		for x in self.looks:
@@ -67,7 +67,7 @@ class Track:
 		var last = first
 		return last != null and last.on and seconds < last.end
 
-	# Return the mode that was asked for at a time, or talking while something is said; None where neither tells.
+	# Return the mode requested at a time, or talking while something is said; None if neither applies.
 	func told_mode(seconds):
 		var found = []
 		for m in self.modes:
@@ -81,7 +81,7 @@ class Track:
 		var said = Util.right_of(found2, seconds) - 1
 		return "talking" if (said >= 0 and seconds < self.speeches[said].end) else null
 
-	# Return the track without items of these ids that begin at `now` or later; what has begun ends now, if it can.
+	# Return the track without items of these ids that begin at `now` or later; those that have begun end now, if they can.
 	func without(idents, now = -INF):
 		var holds = idents.size() == 0
 		if not holds:
@@ -138,7 +138,7 @@ class Track:
 				) if idents.has(x.id) else x)
 		return Track.new(found, found2, found3, found4, found5, found6, found7)
 
-	# Return the track with those of another, whose speeches may overlap each other's.
+	# Return the track with the items of another one, whose speeches may overlap.
 	func joined(more):
 		if more.idents().size() == 0:
 			return self
@@ -202,7 +202,7 @@ class Track:
 			Util.list(moods)
 		)
 
-	# Return the track without what no time from `seconds` on needs.
+	# Return the track without items that are not needed from `seconds` on.
 	func since(seconds):
 		# Those that no later one has replaced; also what is over: it tells since when what shows has shown.
 		var looks = []
@@ -264,7 +264,7 @@ class Track:
 			Util.list(Mood.lasting(self.moods, seconds))
 		)
 
-	# Return the last of an id that is said.
+	# Return the last speech with an id.
 	func last_speech(ident):
 		var first = null
 		for s in Util.backwards(self.speeches):
@@ -273,7 +273,7 @@ class Track:
 				break
 		return first
 
-	# Whether all is the same that chance depends on: where things are, and what stays, is not.
+	# Return whether everything is the same that random draws depend on. Places and stays are not part of it.
 	func draws_like(other):
 		if not Items.alike_looks(self.looks, other.looks) or not Items.alike_speeches(self.speeches, other.speeches):
 			return false
@@ -281,7 +281,7 @@ class Track:
 			return false
 		return Items.alike_modes(self.modes, other.modes) and Items.alike_blinks(self.blinks, other.blinks)
 
-	# Whether all is the same.
+	# Return whether everything is the same.
 	func like(other):
 		if not Items.alike_places(self.places, other.places) or not Items.alike_stays(self.stays, other.stays):
 			return false

@@ -1,7 +1,7 @@
-# What is done to something said: it is broken off, paused, gone on with, finished. An utterance is all that is said under one id,
-# piece by piece, until it is over. Times are seconds.
+# Break off, pause, resume and finish utterances. An utterance is everything that is said under one id, piece by piece, until it
+# is over. Times are seconds.
 #
-# What is paused lies in a time that never comes (`PAUSED`), each utterance in a place of its own there.
+# A paused utterance is moved to a time that never comes (`PAUSED`), each to a slot of its own.
 #
 # Translated from metagraph/playback/life/utterances.py; change that, and translate anew.
 
@@ -17,22 +17,23 @@ const EARLIER = 0.03  # seconds by which it can stop sooner, since a mouth takes
 const TOGETHER = 0.001  # seconds between two pieces of one utterance, at most
 
 
-# Return when a voice can begin: sooner than gestures, which blend. Nothing has been shown at the very beginning.
+# Return when a voice can begin: sooner than gestures, which blend. At the very beginning it can begin at once, because nothing
+# has been shown.
 static func find_soon(now, lookahead):
 	return now + Util.least(lookahead, VOICE) if now > 0 else 0.0
 
 
-# Return whether what begins then is paused.
+# Return whether an item with this start is paused.
 static func is_paused(start):
 	return start >= PAUSED
 
 
-# Return whether a piece can be added to though it does not run: more was promised, or it is paused.
+# Return whether more can be added to a piece that is not being said: more was announced, or it is paused.
 static func takes_more(speech):
 	return speech.more or speech.start >= PAUSED
 
 
-# Return whether an utterance is not over at `now`: it is said, comes, is paused, or has more to come.
+# Return whether an utterance is not over at `now`: it is being said, will be said, is paused, or expects more.
 static func goes_on(speeches, ident, now):
 	var first = null
 	for s in Util.backwards(speeches):
@@ -53,8 +54,8 @@ static func find_utterances(track, what, now):
 	return out
 
 
-# Return when the voice of an utterance stops that should: at the end of the sound that is made, by `soon`; where its sounds are
-# not known, or it pauses, at once; where it has not begun, when it would. now: when gestures can stop.
+# Return when the voice of an utterance stops: at the end of the current sound, at `soon` at the latest; at once if its sounds are
+# unknown or it is in a pause; at its start if it has not begun. now: when gestures can stop.
 static func find_stop(alphabet, track, ident, soon, now):
 	var first = soon - EARLIER if now > soon else soon
 	var first2 = null
@@ -83,7 +84,7 @@ static func find_stop(alphabet, track, ident, soon, now):
 	return Util.least_of([soon] + [running.end] + ends) if ends.size() > 0 else first
 
 
-# Return a time among those that never come in which nothing lies.
+# Return a free slot among the times that never come.
 static func find_slot(track):
 	var found = []
 	for s in track.speeches:
@@ -92,7 +93,7 @@ static func find_slot(track):
 	return Util.most_of([PAUSED] + found)
 
 
-# Return the track with an utterance over at `stop`: what comes of it is not said.
+# Return the track with an utterance ended at `stop`: its later pieces are not said.
 static func break_off(track, ident, stop):
 	var speeches = []
 	for speech in track.speeches:
@@ -103,12 +104,12 @@ static func break_off(track, ident, stop):
 	return _closed(track, speeches, ident, stop, true)
 
 
-# Return the track with an utterance that is over when all that is known of it was said.
+# Return the track with an utterance that is over once all its known pieces are said.
 static func finish_speech(track, ident, soon):
 	return _closed(track, Util.list(track.speeches), ident, soon, false)
 
 
-# Return the track with these speeches, of which an utterance has no more to come. cuts: whether it was broken off.
+# Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it was broken off.
 static func _closed(track, speeches, ident, now, cuts):
 	var out = Util.list(speeches)
 	var end = now
@@ -144,8 +145,8 @@ static func _until(mood, end):
 	return Mood.MoodFrom.new(mood.id, mood.start, mood.valence, mood.arousal, mood.intensity, end)
 
 
-# Return the track with an utterance that is held from `stop` on, in `slot` (`find_slot`). made: ids of what was asked for it; it
-# waits as long, if it has not begun.
+# Return the track with an utterance paused from `stop` on, in `slot` (`find_slot`). made: ids of requests that belong to it; they
+# wait, too, if they have not begun.
 static func pause(track, ident, made, stop, slot):
 	var by = slot - stop
 	var kept = []
@@ -215,7 +216,7 @@ static func pause(track, ident, made, stop, slot):
 	return _moved(left, held, made, stop, PAUSED, by)
 
 
-# Return the track with an utterance that goes on at `soon`. made: as for `pause`.
+# Return the track with an utterance that continues at `soon`. made: as for `pause`.
 static func resume(track, ident, made, soon):
 	var held = []
 	for s in track.speeches:
@@ -262,8 +263,8 @@ static func resume(track, ident, made, soon):
 	return _moved(left, on, made, PAUSED, INF, by)
 
 
-# Return the track with more speeches, and with the looks and moods of `made` that begin from `low` to before `high` moved by so
-# many seconds.
+# Return the track with more speeches, and with the looks and moods of `made` that begin from `low` to before `high` moved by a
+# number of seconds.
 static func _moved(track, speeches, made, low, high, by):
 	var looks = []
 	for x in track.looks:
@@ -291,8 +292,7 @@ static func _moved(track, speeches, made, low, high, by):
 	return left.joined(Track.Track.new(Util.list(looks), Util.list(speeches), [], [], [], [], Util.list(moods)))
 
 
-# Return why an utterance is over at the end of a piece of it: "finished", "interrupted" or "replaced"; "" where it is not over
-# there.
+# Return why an utterance is over at the end of a piece: "finished", "interrupted" or "replaced"; "" if it is not over there.
 static func explain_end(speeches, speech):
 	var first = null
 	for s in speeches:
@@ -307,7 +307,7 @@ static func explain_end(speeches, speech):
 	return "interrupted" if (coming == null or coming.start > speech.end + TOGETHER) else "replaced"
 
 
-# Return whether a later piece of the same id goes on with what an earlier one says.
+# Return whether a later piece of the same id continues an earlier one.
 static func is_same_utterance(one, other):
 	if one.more or (other.skip > 0 and one.length != null and one.over == null):
 		return true

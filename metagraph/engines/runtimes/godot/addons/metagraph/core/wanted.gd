@@ -1,4 +1,4 @@
-# What was asked of the life layers, as segments in time: which mode the character is in, and what it looks at.
+# Requests of the life layers as segments in time: the mode of the character, and what it looks at.
 #
 # Translated from metagraph/playback/life/wanted.py; change that, and translate anew.
 
@@ -16,8 +16,8 @@ const PLACE = 2
 const BEGIN = 3
 
 
-# What is looked at from `start` on: a point, or a name whose place the project knows. since: when the look at it began; its place
-# may have changed meanwhile. asked: not of its own accord.
+# The target of the gaze from `start` on: a point, or a name whose place the project knows. since: when the look at it began; its
+# place may have changed meanwhile. asked: whether a request set it.
 class GazeTarget:
 	var start
 	var to
@@ -34,14 +34,14 @@ class GazeTarget:
 		self.strict = strict_
 		self.asked = asked_
 
-	# Whether it is the same but for its times.
+	# Return whether it is the same apart from its times.
 	func like(other):
 		if self.amount != other.amount or self.strict != other.strict or self.asked != other.asked:
 			return false
 		return Spots.is_same_spot(self.to, other.to)
 
 
-# Return the mode asked for; where none is, talking while something is said and idle otherwise.
+# Return the requested mode; without one, talking while something is said and idle otherwise.
 static func mode_at(track, seconds):
 	var told = track.told_mode(seconds)
 	return "idle" if told == null else told
@@ -76,7 +76,7 @@ static func modes_between(track, start, end):
 	return out
 
 
-# Return what a character is in the mood for: what its life has set, and what is told over time.
+# Return the moods of a character: the one set in its life layers, and those requested over time.
 static func moods_of(life, track):
 	return Mood.Moods.new(Mood.Mood.new(life.valence, life.arousal, life.intensity), track.moods)
 
@@ -91,7 +91,7 @@ static func moods_between(moods, start, end):
 	return out
 
 
-# Return what a mode makes of the amounts, in a mood.
+# Return the factors of the amounts for a mode and a mood.
 static func ways_in(ways, mood):
 	if mood.neutral:
 		return ways
@@ -99,9 +99,9 @@ static func ways_in(ways, mood):
 	return Life.scaled(ways, of.breathing, of.breath_rate, of.aversion_rate, of.saccade_rate, of.blinks)
 
 
-# Return what is looked at from `start` to before `end`; the first begins at `start`.
+# Return the targets of the gaze from `start` to before `end`; the first begins at `start`.
 #
-# The latest look holds until it ends or another of its importance or more begins; a lesser one waits beneath.
+# The latest look holds until it ends or another of at least the same importance begins; a less important one waits.
 static func targets_between(track, start, end):
 	var changes = []
 	for n2 in range(track.looks.size()):
@@ -123,9 +123,9 @@ static func targets_between(track, start, end):
 	for c in changes:
 		keys.append([c[0], c[1]])
 	changes = Util.ordered(changes, keys)
-	var looks = []  # places of looks, the most important first; those beneath are older or lesser
+	var looks = []  # indices of looks, the most important first; the others are older or less important
 	var places = {}
-	for place in track.places:  # of a point that is told again and again there are thousands
+	for place in track.places:  # a point that is sent again and again has thousands
 		if place.start < start:
 			places[place.name] = place.point
 	var chosen = -1

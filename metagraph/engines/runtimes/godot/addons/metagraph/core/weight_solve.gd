@@ -1,19 +1,19 @@
-# How a standing body answers its arms: hips give way, spine and legs make up for it, feet stay.
+# How a standing body reacts to its arms: the hips give way, spine and legs compensate, and the feet stay.
 #
-# Rotations are quaternions xyzw, lengths metres; places are those in a rig's list of joints. Worked out one pose at a time, in
-# plain numbers, the same in all languages.
+# Rotations are quaternions xyzw, lengths metres; a place is an index into a rig's list of joints. The code computes one pose at a
+# time, with plain numbers, the same in all languages.
 #
-# By how much: whoever stands keeps the centre of mass over the feet, so the hips go as far back as the arms carry it ahead (de
-# Leva 1996 has what each segment weighs; that trunk and legs move against a raised arm: Bouisset and Zattara 1987). The other
-# amounts are ours, chosen by eye on the sample.
+# How much: a standing person keeps the centre of mass over the feet, so the hips move back as far as the arms move it ahead. The
+# weight of each segment is from de Leva 1996. That trunk and legs move against a raised arm is from Bouisset and Zattara 1987.
+# The other amounts are ours, chosen by eye on the sample.
 #
 # Translated from metagraph/motion/weight_solve.py; change that, and translate anew.
 
 const ContactSolve = preload("contact_solve.gd")
 const PlainVectors = preload("plain_vectors.gd")
 const Util = preload("util.gd")
-const BALANCE = 1.4  # of how far the arms carry the centre of mass away, the hips give way
-const HASTE = 0.12  # seconds of the arms' speed that add to that
+const BALANCE = 1.4  # factor of the arms' shift of the centre of mass by which the hips compensate
+const HASTE = 0.12  # seconds of the arms' speed that are added to the shift
 const DIP = 0.05  # seconds: arms that rise this fast press the body down, half as far at most
 const SPIN = 30.0  # seconds: how far the pelvis turns against what arms turn about the vertical
 const ROLL = 3.0  # radians that the pelvis rolls for a shift to a side of its own height, and
@@ -25,7 +25,8 @@ const STANDING = 0.15  # and this much above it stands altogether
 const GIVE = 0.5  # of a shift: over so much a leg's full length makes itself felt
 
 
-# A joint that turns. left, up, ahead: the character's directions in its own space. share: of the hips' turn, below 0 against it.
+# A joint that turns. left, up, ahead: the character's directions in its own space. share: of the hips' rotation, below 0 for the
+# opposite direction.
 class WeightBend:
 	var place
 	var left
@@ -55,10 +56,10 @@ class WeightCollar:
 		self.side = side_
 
 
-# What of a skeleton answers its arms. body: joints, its `arms` being the legs, left and right, its `hands` the names of the
-# hands. bends: from the hips up. knees: where straight legs bend to, in the upper legs' own spaces. levers: how far to the left
-# and ahead of the hips arms are. up: the character's up. height: of the figure, metres. strength: how much of the arms' layer
-# counts, 0..1.
+# The part of a skeleton that reacts to its arms. body: its joints; its `arms` are the legs, left and right, its `hands` the names
+# of the hands. bends: from the hips up. knees: the direction in which straight legs bend, in the upper legs' own spaces. levers:
+# how far the arms are to the left and ahead of the hips. up: the character's up direction. height: of the figure, metres.
+# strength: how much of the arms' layer counts, 0..1.
 class WeightRig:
 	var body
 	var bends
@@ -80,7 +81,7 @@ class WeightRig:
 		self.strength = strength_
 
 
-# Whether there is anything to answer.
+# Return whether there is anything to react to.
 static func moves_body(drive):
 	var is_any = false
 	for x in drive:
@@ -90,9 +91,9 @@ static func moves_body(drive):
 	return is_any
 
 
-# Change a pose of the rig's joints by what its arms do; return whether it did.
+# Change a pose of the rig's joints in reaction to its arms; return whether it changed.
 #
-# drive: as `posing.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
+# drive: as `posing.follow_through.driven` returns it. follow, lift: the user's dials. You need not call `spread` first.
 static func answer_arms(rig, pose, drive, follow, lift):
 	follow = follow * rig.strength
 	lift = lift * rig.strength
@@ -112,7 +113,7 @@ static func answer_arms(rig, pose, drive, follow, lift):
 	return true
 
 
-# Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs.
+# Return how much a figure stands: 0 if it sits or lies, 1 on straight legs.
 static func stands_by(rig, pose):
 	var least = 1.0
 	for leg in rig.body.arms:
@@ -126,7 +127,7 @@ static func stands_by(rig, pose):
 	return x * x * (3.0 - 2.0 * x)
 
 
-# Shift and turn the hips, undo that in the spine, and bring the legs back to where the feet were.
+# Shift and rotate the hips, undo that in the spine, and move the legs so that the feet stay.
 static func _give_way(rig, pose, drive, follow):
 	var body = rig.body
 	var vx = drive[8] + drive[11]
@@ -183,8 +184,8 @@ static func _give_way(rig, pose, drive, follow):
 		ContactSolve.bring(body, pose, side, feet[side], soles[side], rig.knees[side])
 
 
-# Return by how much the hips have to sink for a foot to be within a leg's reach; from a little before that on, so that it sets in
-# gently. reach: how far hip and foot were apart.
+# Return how far the hips have to sink so that the leg reaches the foot. It sets in gently, a little before the limit. reach: the
+# distance of hip and foot before.
 static func hips_sink(rig, pose, side, foot, reach, soft):
 	var leg = rig.body.arms[side]
 	var hip = pose.at[leg.upper]
@@ -203,12 +204,12 @@ static func hips_sink(rig, pose, side, foot, reach, soft):
 	return 0.0 if over <= -soft else (over + soft) * (over + soft) / (4.0 * soft)
 
 
-# Return a number that never gets to `most`, and is itself where small.
+# Return a number limited smoothly to below `most`; small numbers stay almost as they are.
 static func _soft(x, most):
 	return x / sqrt(1.0 + x / most * (x / most))
 
 
-# Return the turn about an axis by its length times an angle, radians.
+# Return the rotation about an axis by its length times an angle, radians.
 static func _turn(axis, angle):
 	var both = axis
 	var x = both[0]

@@ -1,10 +1,10 @@
-# Gestures that go with words, from the words alone: greetings, denial, doubt, contrast, lists, who and where is meant, emphasis,
-# and a beat where nothing of that is said.
+# Gestures that go with words, from the words alone: greetings, denial, doubt, contrast, lists, persons and places, emphasis, and
+# a beat where there is none of these.
 #
 # After the idea of BEAT (Cassell, Vilhjalmsson and Bickmore, 2001): a text's words propose gestures by rules and a lexicon that
-# anybody can edit, and of those that would get in each other's way the weaker are left out. A gesture that means something leads
-# its word by more than a beat does (ter Bekke et al. 2024: its stroke by some 0.2 s). All other numbers are ours. Times are
-# seconds from where the text begins.
+# anybody can edit, and the weaker ones of those that would collide are left out. A gesture with a meaning precedes its word by
+# more than a beat does (ter Bekke et al. 2024: its stroke by some 0.2 s). All other numbers are ours. Times are seconds from
+# where the text begins.
 #
 # Translated from metagraph/speech/word_gestures.py; change that, and translate anew.
 
@@ -28,9 +28,9 @@ const INSIDE = "'’-"  # what a word may have in the middle
 const CLOSING = "\"')”»"  # what may stand between a word and the mark behind it
 
 
-# What some words propose. words: small letters; several in a row for a phrase. tags: of a gesture of the arms, the best first; of
-# those a character has the first counts. head: what it does at the same time, "nod", "shake" or nothing. strength: which of two
-# wins.
+# A gesture that some words propose. words: small letters; several in a row for a phrase. tags: of a gesture of the arms, the best
+# first; the first one that the character has counts. head: its movement at the same time: "nod", "shake" or nothing. strength:
+# the stronger of two rules wins.
 class GestureRule:
 	var words
 	var tags
@@ -44,8 +44,8 @@ class GestureRule:
 		self.strength = strength_
 
 
-# A lexicon. question, exclamation: what a sentence's end proposes for its last word that is not small. clause: what one proposes
-# in which no word does.
+# A lexicon. question, exclamation: proposed at the end of a sentence, for its last content word. clause: proposed for a clause
+# without other proposals.
 class GestureWords:
 	var rules
 	var language
@@ -61,7 +61,7 @@ class GestureWords:
 		self.clause = clause_ if clause_ != null else GestureRule.new()
 
 
-# A word of a text. plain: in small letters. mark: what stands behind it.
+# A word of a text. plain: in small letters. mark: the punctuation after it.
 class TextWord:
 	var text
 	var plain
@@ -77,7 +77,7 @@ class TextWord:
 		self.mark = mark_
 
 
-# When a synthesiser says a word.
+# A word with the times at which a synthesiser says it.
 class ToldWord:
 	var start
 	var end
@@ -87,7 +87,7 @@ class ToldWord:
 		self.end = end_
 
 
-# A gesture that goes with a word. do: "gesture", "nod" or "shake". at: of its stroke. tags: none for the head's.
+# A gesture that goes with a word. do: "gesture", "nod" or "shake". at: time of its stroke. tags: empty for gestures of the head.
 class ProposedGesture:
 	var layer
 	var at
@@ -105,8 +105,8 @@ class ProposedGesture:
 		self.do = do_
 
 
-# What is asked for a gesture. at: seconds of the session, from which on it may begin. stroke: when its stroke is wanted, None for
-# the head's. late: by how much it may come late.
+# The request for a gesture. at: the earliest second of the session at which it may begin. stroke: the time of its stroke, None
+# for the head. late: by how many seconds it may come late.
 class GestureAsk:
 	var do
 	var layer
@@ -124,7 +124,7 @@ class GestureAsk:
 		self.late = late_
 
 
-# A word, how many letters of the text there are up to its end, and the mark behind it.
+# A word, the number of letters of the text up to its end, and the mark after it.
 class SplitWord:
 	var text
 	var end
@@ -136,9 +136,10 @@ class SplitWord:
 		self.mark = mark_
 
 
-# Return a text's words with their times: as a synthesiser told them, else as long as lips would take.
+# Return a text's words with their times: those of a synthesiser, else as long as lips would take.
 #
-# told: of the words in order; those beyond are left out. seconds: how long all of it takes, where that alone is known.
+# told: the times of the words in order; words without times are left out. seconds: how long all of it takes, if only that is
+# known.
 static func words_of(alphabet, text, told = null, seconds = null):
 	if told == null:
 		told = []
@@ -171,7 +172,7 @@ static func _is_letter(alphabet, letter):
 	return kind == "syllable" or kind == "letter"
 
 
-# Whether there are words among letters, so that there is something to say.
+# Return whether letters contain words, so that there is something to say.
 static func telling(alphabet, letters):
 	var is_any = false
 	for letter in letters:
@@ -207,10 +208,10 @@ static func _split(alphabet, letters):
 	return out
 
 
-# Return the gestures that go with words, in order, none in another's way.
+# Return the gestures that go with words, in order and without collisions.
 #
-# arms: tags that a character's gestures of the arms have; what it has none for is not proposed. head: whether the head moves.
-# small: words that say little by themselves.
+# arms: tags of the character's gestures of the arms; others are not proposed. head: whether the head moves. small: words that say
+# little by themselves.
 static func proposed_for(words, arms, head, lexicon, small, seed_):
 	var every = []
 	var clause = []
@@ -246,7 +247,7 @@ static func proposed_for(words, arms, head, lexicon, small, seed_):
 	return Util.ordered(kept, keys)
 
 
-# Return the rule with the longest phrase that begins at a word, and how many words that has; 0 where none does.
+# Return the rule with the longest phrase that begins at a word, and the number of its words; 0 if there is none.
 static func _fitting(lexicon, words, n):
 	var best = lexicon.clause
 	var longest = 0
@@ -259,7 +260,7 @@ static func _fitting(lexicon, words, n):
 	return [best, longest]
 
 
-# Whether a phrase is said from a word on, and not over a pause.
+# Return whether a phrase begins at a word, without a pause inside it.
 static func _says(words, first, parts):
 	if first + parts.size() > words.size():
 		return false
@@ -283,8 +284,8 @@ static func _of(rule, word, arms, head):
 	return out
 
 
-# Leave out what is too near to something stronger of its layer; of equals the earlier stays. The same tag twice in a row needs
-# more room.
+# Leave out gestures that are too near to a stronger one of their layer; of two equal ones the earlier stays. The same tag twice
+# in a row needs more room.
 static func _spaced(every):
 	var kept = []
 	var keys = []
@@ -310,8 +311,8 @@ static func _in_the_way(one, other):
 	return Util.absolute(one.at - other.at) < room
 
 
-# Return what is asked for gestures of a text that begins at `at` seconds of the session. Those that could not be in time are
-# refused rather than made late.
+# Return the requests for the gestures of a text that begins at `at` seconds of the session. Gestures that cannot be in time are
+# refused, not made late.
 static func gesture_asks(every, at):
 	var out = []
 	for one in every:
@@ -323,7 +324,7 @@ static func gesture_asks(every, at):
 	return out
 
 
-# Return after how many letters the first sentence of a text ends, 0 where it goes on. over: whether the text does not.
+# Return the number of letters after which the first sentence of a text ends, 0 if it goes on. over: whether the text is complete.
 static func sentence_end(alphabet, letters, over):
 	var some = false
 	for n in range(letters.size()):
