@@ -68,11 +68,11 @@ from metagraph.motion.skeleton import Pose
 from metagraph.playback.bml.reader import BmlBlock, read_block
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.alphabet import ALPHABET
-from metagraph.playback.life.items import find_line_start
-from metagraph.playback.life.track import Speech
+from metagraph.playback.life.items import LookAt, Speech, StayFrom, find_line_start
 from metagraph.playback.life.utterances import find_soon, goes_on, is_paused, takes_more
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.hearing import makers
+from metagraph.playback.planning.mood import MoodFrom
 from metagraph.playback.planning.plan_head import RECENT
 from metagraph.playback.planning.running_plan import CUT, RunningPlan
 from metagraph.playback.posing.overlay import Overlay
@@ -417,7 +417,14 @@ class LiveSession:
         keys = self.ledger.belonging(target) if ask.what else [x for x in known if known[x].client == owner]
         keys = [x for x in keys if not known[x].ended and (ask.what or x not in stays)]
         # What has begun and lasts is no longer in the ledger, but can still be ended.
-        lasting = [x.id for x in self.plan.track.items if getattr(x, "end", 0.0) > until]
+        track = self.plan.track
+        last: list[LookAt | Speech | StayFrom | MoodFrom] = [
+            *track.looks,
+            *track.speeches,
+            *track.stays,
+            *track.moods,
+        ]
+        lasting = [x.id for x in last if x.end > until]
         lasting += self.happenings.list_lasting()
         lasting = [x for x in dict.fromkeys(lasting) if x not in known]
         keys += [
@@ -425,7 +432,7 @@ class LiveSession:
         ]
         if not keys:
             return Reply(id=ident, state="done", why=self._why_nothing(target, ask.what))
-        speeches = self.plan.track.speeches
+        speeches = track.speeches
         said = next((s.id for s in speeches if s.id in keys and goes_on(speeches, s.id, until)), None)
         spoken, word = None, None
         if said is not None:

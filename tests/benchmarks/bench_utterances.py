@@ -5,7 +5,9 @@ words with their times and as sound, and interrupts each after a moment, while 5
 requests a second each. Measured is the time from sending the first piece until the first frame is posed in
 which the mouth has opened (by 1 % of a shape), and from sending `interrupt` until the first frame in which
 the voice has stopped; frames are posed at 60 Hz, as a window would. The lines are in a child process
-(`Relay`). Wall time, so that other programs on the machine count.
+(`Relay`). Wall time, so that other programs on the machine count; then, on Linux, the same without the time
+in which this process's thread was ready and other programs had the processors (`/proc/self/schedstat`). The
+load is the mean number of processes that ran or waited in the last minute.
 """
 
 from __future__ import annotations
@@ -14,8 +16,11 @@ import base64
 import contextlib
 import json
 import multiprocessing
+import os
 import sys
 import time
+from bisect import bisect_right
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -77,8 +82,18 @@ def talk(port: int, count: int, result: Any) -> None:
     result.send(None)
 
 
-def flood(port: int, clients: int, until: float) -> None:
-    """Send requests with many clients, each as fast as it is answered, 20 a second at most."""
+def read_waiting() -> float:
+    """Return for how many seconds this thread was ready and had no processor; 0 where the system does not
+    tell.
+    """
+    try:
+        return int(Path("/proc/self/schedstat").read_text().split()[1]) * 1e-9
+    except OSError:
+        return 0.0
+
+
+def flood(port: int, clients: int, until: float, sent: Any) -> None:
+    """Send requests with many clients, each as fast as it is answered, 20 a second at most; count them."""
     from websockets.exceptions import ConnectionClosed
     from websockets.sync.client import connect
 
@@ -102,8 +117,16 @@ def flood(port: int, clients: int, until: float) -> None:
                 line.send(json.dumps(asks[(n + k) % len(asks)]))
             for line in lines:
                 line.recv(timeout=60)
+            sent.value += clients
             n += 1
             time.sleep(max(0.0, 0.05 - (time.perf_counter() - begin)))
+
+
+def show(found: Sequence[float]) -> str:
+    """Return what half, 95 %, 99 % and all of some times are within."""
+    some = sorted(found) or [float("nan")]
+    at = [some[int(share * (len(some) - 1))] for share in (0.5, 0.95, 0.99, 1.0)]
+    return f"median {at[0]:5.1f}  95 % {at[1]:5.1f}  99 % {at[2]:5.1f}  most {at[3]:5.1f} ms"
 
 
 def main(count: int, floods: int) -> None:
@@ -127,7 +150,8 @@ def main(count: int, floods: int) -> None:
         time.sleep(FRAME)
     port = int(str(relay.ready.websocket).rpartition(":")[2])
     length = count * (SPEAKS + RESTS + 0.1) + 30
-    others = context.Process(target=flood, args=(port, floods, time.time() + length), daemon=True)
+    sent = context.Value("i", 0)
+    others = context.Process(target=flood, args=(port, floods, time.time() + length, sent), daemon=True)
     agent = context.Process(target=talk, args=(port, count, theirs), daemon=True)
     if floods:
         others.start()
@@ -135,10 +159,17 @@ def main(count: int, floods: int) -> None:
     opened: dict[str, float] = {}  # utterance -> when the first frame was posed in which the mouth was open
     closed: dict[str, float] = {}  # and in which its voice had stopped
     rows: list[tuple[str, str, float, float]] = []
-    done, last = False, 0.0
+    ticks: list[float] = []  # processor time of each
+    frames: list[float] = []  # when each began
+    waits = [0.0]  # for how long this thread had waited for a processor by then
+    done, first, said = False, time.perf_counter(), time.process_time()
     while not done:
         start = time.perf_counter()
+        frames.append(start)
+        waits.append(read_waiting())
+        busy = time.thread_time()
         relay.tick(session, start - begin)
+        ticks.append(1e3 * (time.thread_time() - busy))
         now = time.perf_counter() - begin
         track = session.plan.track
         shapes = compute_mouth_shapes(track, project.voices, project.life.lip_smoothing, np.array([now]))
@@ -157,27 +188,41 @@ def main(count: int, floods: int) -> None:
             done = row is None
             if row is not None:
                 rows.append(row)
-        last = max(last, time.perf_counter() - start)
         time.sleep(max(0.0, FRAME - (time.perf_counter() - start)))
     relay.close(wait=True)
-    print(f"{len(rows)} utterances, {floods} others; the longest frame took {1e3 * last:.0f} ms")
+    took = time.perf_counter() - first
+    print(
+        f"{len(rows)} utterances; {floods} others, {sent.value / took:.0f} requests a second; "
+        f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}"
+    )
+    print(
+        f"processor: {show(ticks)} a tick; this process {(time.process_time() - said) / took:.0%} of a core"
+    )
+    print(
+        f"waited for a processor {(waits[-1] - waits[1]) / took:.0%} of the time; "
+        f"{len(frames) / took:.0f} frames a second"
+    )
+
+    def find_wait(since: float, until: float) -> float:
+        """Return for how long this thread waited for a processor."""
+        return waits[bisect_right(frames, until)] - waits[bisect_right(frames, since)]
+
     for what, times in (("first movement", opened), ("interrupted", closed)):
-        for kind in (*KINDS, "all"):
-            found = sorted(
-                1e3 * (times[ident] - (asked if times is opened else stopped))
-                for one, ident, asked, stopped in rows
-                if ident in times and kind in (one, "all")
-            )
-            wanted = sum(kind in (row[0], "all") for row in rows)
-            if not found:
-                print(f"  {what:15} {kind:7} none of {wanted} seen")
-                continue
-            at = [found[int(share * (len(found) - 1))] for share in (0.5, 0.95, 0.99, 1.0)]
-            late = sum(x > 100 for x in found)
-            print(
-                f"  {what:15} {kind:7} median {at[0]:5.0f}  95 % {at[1]:5.0f}  99 % {at[2]:5.0f}  "
-                f"most {at[3]:5.0f} ms; {late} of {len(found)} above 100 ms, {wanted - len(found)} not seen"
-            )
+        for own in (False, True):
+            for kind in (*KINDS, "all"):
+                found = []
+                for one, ident, asked, stopped in rows:
+                    if ident in times and kind in (one, "all"):
+                        since = asked if times is opened else stopped
+                        over = find_wait(since, times[ident]) if own else 0.0
+                        found.append(1e3 * (times[ident] - since - over))
+                wanted = sum(kind in (row[0], "all") for row in rows)
+                late = sum(x > 100 for x in found)
+                named = f"{what}{', waits left out' if own else ''}"
+                print(
+                    f"  {named:33} {kind:7} {show(found)}; {late} of {len(found)} above 100 ms, "
+                    f"{wanted - len(found)} not seen"
+                )
 
 
 if __name__ == "__main__":
