@@ -82,6 +82,8 @@ from metagraph.speech.spoken_so_far import spoken_until
 from metagraph.speech.spoken_text import read_spoken_line
 from metagraph.speech.word_gestures import telling
 
+UNSAID = "something else is said then"
+SAID = ("say", ADDED)  # the lanes of what is said
 AGAIN = 0.25  # seconds for which a layer without room is not tried again
 TIDY = 0.25  # seconds between two clean-ups of what is over
 KEPT = 10.0  # seconds for which reports and requests of the plan are kept after they are over
@@ -428,7 +430,13 @@ class LiveSession:
         lasting += self.happenings.list_lasting()
         lasting = [x for x in dict.fromkeys(lasting) if x not in known]
         keys += [
-            x for x in lasting if (target in makers(x) if ask.what else x.startswith(mine) and x not in stays)
+            x
+            for x in lasting
+            if (
+                x.startswith(target) and target in makers(x)
+                if ask.what
+                else x.startswith(mine) and x not in stays
+            )
         ]
         if not keys:
             return Reply(id=ident, state="done", why=self._why_nothing(target, ask.what))
@@ -553,7 +561,8 @@ class LiveSession:
                 self._tell_changed(key, ask, found.get(key, FoundAnswer()), out)
         for open_ in work.open.values():
             if open_.parts is None:
-                reply = self._settle(open_.key, found.get(open_.key, FoundAnswer()))
+                answer = FoundAnswer() if self._is_unsaid(open_) else found.get(open_.key, FoundAnswer())
+                reply = self._settle(open_.key, answer)
                 for each in (open_, *open_.also):
                     out.replies[each.place] = self._tell_added(each, reply)
             else:
@@ -571,8 +580,8 @@ class LiveSession:
         else:
             self.ledger.settle(key, found)
         why = f"too late by {ask.missed:.2f} s" if ask.missed > 0 and not found.why else found.why
-        if found.state == "refused" and not found.reports and ask.lane in ("say", ADDED):
-            why = "something more important is said then"
+        if found.state == "refused" and not found.reports and ask.lane in SAID:
+            why = UNSAID
         return Reply(
             id=ask.ident,
             state=found.said(ask.missed),  # type: ignore[arg-type]
@@ -581,6 +590,16 @@ class LiveSession:
             until=round_seconds(found.until),
             actions=tuple(found.what),
             why=reword_for_client(why, ask.client),
+        )
+
+    def _is_unsaid(self, open_: Open) -> bool:
+        """Return whether nothing of a line is said, so that the plan only has what was said before under its
+        id.
+        """
+        before, speeches = open_.adds, self.plan.track.speeches
+        same = before is not None and self.plan.track.last_speech(open_.key) is before
+        return (
+            same and self.ledger.known[open_.key].lane in SAID and not goes_on(speeches, open_.key, self.now)
         )
 
     def _goes_on_from(self, open_: Open) -> bool:
@@ -609,7 +628,11 @@ class LiveSession:
 
     def _end_waiting(self, key: str, ask: OpenAsk, reason: Reason, why: str) -> None:
         """Report that something has ended which was promised and has not begun."""
-        fixed = self.now + self.project.settings.lookahead
+        ahead = self.project.settings.lookahead
+        again = (
+            reason == "replaced" and ask.lane in SAID
+        )  # what takes its place begins as soon as a voice can
+        fixed = find_soon(self.now, ahead) if again else self.now + ahead
         self.happenings.end_waiting(key, ask, reason, why, self.now, self.plan, fixed)
 
     def _tell_added(self, open_: Open, reply: Reply) -> Reply:
@@ -638,6 +661,8 @@ class LiveSession:
         since = None if is_paused(began) else round_seconds(began)
         if is_paused(before.start):
             at = reply.at
+        if at is not None and speech.length is not None and at >= speech.end:  # something else cut it short
+            return Reply(id=reply.id, state="refused", why=UNSAID, notes=notes)
         return msgspec.structs.replace(reply, at=at, since=since, notes=notes)
 
     def _settle_block(self, open_: Open, found: Mapping[str, FoundAnswer]) -> Reply:

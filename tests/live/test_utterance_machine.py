@@ -104,10 +104,10 @@ class Utterances(RuleBasedStateMachine):
         known = self.session.ledger.known.get(named)
         return named in self.session.happenings.running or (known is not None and not known.ended)
 
-    def go(self, ticks: int) -> None:
+    def go(self, ticks: int, step: float = TICK) -> None:
         for _ in range(ticks):
             asked, self.asked = self.asked, []
-            out = self.session.tick(self.session.now + TICK)
+            out = self.session.tick(self.session.now + step)
             assert len(out.replies) == len(asked), "each request has one reply"
             said = set()
             for (agent, request), reply in zip(asked, out.replies, strict=True):
@@ -145,7 +145,8 @@ class Utterances(RuleBasedStateMachine):
             self.send(agent, {"do": "finish"})
             self.go(1)
         before = {key: len(model.ends) for key, model in self.models.items() if model.lives}
-        self.go(60 * 30)
+        self.go(60)
+        self.go(290, 0.1)
         for key, model in self.models.items():
             assert not self.lives(key), (key, "has ended")
             assert len(model.ends) == before.get(key, len(model.ends) - 0) + (key in before), (key, "once")
