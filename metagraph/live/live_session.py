@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -69,7 +70,13 @@ from metagraph.playback.bml.reader import BmlBlock, read_block
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.items import LookAt, Speech, StayFrom, find_line_start
-from metagraph.playback.life.utterances import find_soon, goes_on, is_paused, takes_more
+from metagraph.playback.life.utterances import (
+    find_soon,
+    goes_on,
+    is_paused,
+    is_same_utterance,
+    takes_more,
+)
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.hearing import makers
 from metagraph.playback.planning.mood import MoodFrom
@@ -607,6 +614,12 @@ class LiveSession:
         speech, before = self.plan.track.last_speech(open_.key), open_.adds
         if speech is None or before is None or before.length is not None or speech is before:
             return False
+        if is_paused(speech.start) and not is_paused(before.start):  # it is paused at the same tick
+            speeches = self.plan.track.speeches
+            pieces = [s for s in speeches if s.id == open_.key and s.start >= before.start]
+            same = all(is_same_utterance(one, other) for one, other in pairwise(pieces))
+            first = pieces[0]
+            return same and (first.start == before.start or first.text == before.text)
         told = speech.timing is not None and before.timing is not None
         return (told and speech.start == before.start) or (not told and speech.start == before.end)
 

@@ -298,3 +298,30 @@ def test_a_piece_behind_which_another_line_is_said_first_is_refused(talk: Talk) 
     first, second = talk.go(talk.session.now + TICK / 2)
     assert second["state"] == "planned"
     assert first["state"] == "refused" and first["why"] == "something else is said then"
+
+
+def test_what_is_added_to_a_line_that_is_paused_at_the_same_moment_goes_on_with_it(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text="It rains all day")
+    talk.session.receive(1, json.dumps({"do": "say", "id": "a", "text": ". Well", "more": True}))
+    talk.session.receive(1, json.dumps({"do": "pause", "what": "a"}))
+    added, _ = talk.go(talk.session.now + TICK / 2)
+    assert added["state"] == "planned"
+    talk.wait(1.0)
+    assert talk.ends("a") == []
+    talk.ask(do="resume")
+    talk.ask(do="finish", what="a")
+    talk.wait(4.0)
+    assert talk.ends("a") == ["finished"]
+
+
+def test_tokens_behind_a_text_that_was_said_whole_follow_it(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text="It rains all day.")
+    added = talk.ask(do="say", id="a", text=" So take a", more=True)
+    talk.ask(do="say", id="a", text=" coat.")
+    assert added["at"] > 1.0
+    talk.wait(6.0)
+    assert [e["text"] for e in talk.heard if e["event"] == "started"] == [
+        "It rains all day.",
+        " So take a coat.",
+    ]
+    assert talk.ends("a") == ["finished"]

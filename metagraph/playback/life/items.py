@@ -146,8 +146,10 @@ def apart(speeches: Sequence[Speech]) -> list[Speech]:
 
 
 def behind(said: Sequence[Speech], new: Speech, now: float) -> Speech:
-    """Return a text that comes while another one of its id is said: it is said after that. said: in order."""
-    if new.timing is not None or new.line is not None or new.start > now:
+    """Return a text that comes while another one of its id is said: it is said after that, also if more of
+    it may come. said: in order.
+    """
+    if (new.timing is not None and not new.timing.paced) or new.line is not None or new.start > now:
         return new
     end = new.start
     for speech in said:

@@ -230,11 +230,12 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return a text that comes while another one of its id is said: it is said after that. said: in order.
+        /// Return a text that comes while another one of its id is said: it is said after that, also if more of it may come.
+        /// said: in order.
         /// </summary>
         public static Speech Behind(List<Speech> said, Speech new_, double now)
         {
-            if (new_.Timing != null || new_.Line != null || new_.Start > now)
+            if ((new_.Timing != null && !new_.Timing.Paced) || new_.Line != null || new_.Start > now)
             {
                 return new_;
             }

@@ -184,9 +184,10 @@ static func apart(speeches):
 	return out
 
 
-# Return a text that comes while another one of its id is said: it is said after that. said: in order.
+# Return a text that comes while another one of its id is said: it is said after that, also if more of it may come. said: in
+# order.
 static func behind(said, new, now):
-	if new.timing != null or new.line != null or new.start > now:
+	if (new.timing != null and not new.timing.paced) or new.line != null or new.start > now:
 		return new
 	var end = new.start
 	for speech in said:
