@@ -29,7 +29,7 @@ from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.items import find_line_start
 from metagraph.playback.life.line_timing import VisemeMark
 from metagraph.playback.life.streamed_voice import StreamedVoice
-from metagraph.playback.life.utterances import explain_end, find_soon
+from metagraph.playback.life.utterances import explain_end, find_forgotten, find_soon
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import AskAnswer, answer_ask, answer_asks
 from metagraph.playback.planning.running_plan import CUT, RunningPlan
@@ -201,6 +201,8 @@ class Character:
         return self.pose()
 
     def _plan_on(self) -> None:
+        for ident in find_forgotten(self.plan.track, self.now):
+            self._queue.append(a.Finish(id=f"{ident}.0", what=ident))
         self._running.reach(self.now)
         self._running.hear(self.now, self._queue)
         for ask in self._queue:

@@ -75,12 +75,19 @@ class Happenings:
     def __init__(self) -> None:
         self.running: dict[str, Running] = {}
         self._leaving: dict[str, Leaving] = {}
+        self._followed = 0.0  # seconds; what began by then runs
         self._told: list[tuple[int | None, str | None, Event]] = []  # whose, called what, which
 
     def stop(self, request: str, reason: Reason, why: str = "") -> None:
         """Take note why a request ends."""
         if request in self.running:
             self.running[request].reason, self.running[request].why = reason, why
+
+    def owes_end(self, request: str) -> bool:
+        """Whether it is still to be told that a request has ended, which runs or begins because it is too
+        late to change that.
+        """
+        return request in self.running or request in self._leaving
 
     def list_lasting(self) -> list[str]:
         """Return the requests that run and are not known to end."""
@@ -97,7 +104,7 @@ class Happenings:
         ask.ended = True
         layer = next((x for x in LAYERS if x == ask.lane), None)
         event = Event(event="ended", t=round_seconds(now), layer=layer, reason=reason, why=why)
-        if _begins(plan, key, layer, now, fixed):
+        if _begins(plan, key, layer, self._followed, fixed):
             self._leaving[key] = Leaving(ask.client, ask.ident, fixed, event)
         else:
             self._tell(ask.client, ask.ident, event)
@@ -116,7 +123,7 @@ class Happenings:
                     yield client, replace(event, id=ident if own else None)
 
     def _follow(self, plan: Plan, ledger: Ledger, before: float, now: float) -> None:
-        t = round_seconds(now)
+        t, self._followed = round_seconds(now), now
         served = find_served(plan)
         for layer in LAYERS:
             lane = plan.layers[layer]
@@ -224,11 +231,11 @@ def find_beginning(speeches: Sequence[Speech], piece: Speech) -> float:
     return first.start if is_paused(first.start) else find_line_start(first)
 
 
-def _begins(plan: Plan, request: str, layer: Layer | None, now: float, fixed: float) -> bool:
-    """Whether something of a request begins before `fixed` seconds."""
+def _begins(plan: Plan, request: str, layer: Layer | None, after: float, fixed: float) -> bool:
+    """Whether something of a request begins later than `after` and before `fixed` seconds."""
     if layer is None:
-        return any(s.id == request and now < s.start < fixed for s in plan.track.speeches)
-    low, high = plan.layers[layer].starts.searchsorted((now, fixed), "right")
+        return any(s.id == request and after < s.start < fixed for s in plan.track.speeches)
+    low, high = plan.layers[layer].starts.searchsorted((after, fixed), "right")
     cues = plan.layers[layer].cues[int(low) : int(high)]
     return any(c.meta.partition("+")[0] == request and c.start < fixed for c in cues)
 

@@ -7,7 +7,8 @@ No sockets here, and no threads: lines call in, and are told what to send.
 from __future__ import annotations
 
 import hmac
-from collections.abc import Sequence
+from collections import deque
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -20,7 +21,9 @@ from metagraph.live.wire import BatchResult, RequestBatch
 CLIENTS = 64  # at most
 BACKLOG = 4 * 1024 * 1024  # bytes a client may leave unread
 POSES_BACKLOG = 128 * 1024  # bytes unread beyond which poses are left out rather than queued
-PER_BATCH = 2000  # requests passed on at once; each client has its share, half where there is one other
+PER_BATCH = (
+    2000  # requests passed on and not answered; each client has its share, half where there is one other
+)
 UNANSWERED = 20000  # requests of one client for which no answer has come
 PROVE = 5.0  # seconds within which a client has to show its token
 
@@ -76,9 +79,12 @@ class _Slot:
 
 @dataclass
 class Hub:
-    """token: what clients have to say first, None for nothing."""
+    """token: what clients have to say first, None for nothing. wake: called when the first message comes in
+    after a batch was taken.
+    """
 
     token: str | None = None
+    wake: Callable[[], None] = lambda: None
     clients: dict[int, _Client] = field(default_factory=dict)
     refused: int = 0
     _count: int = 0
@@ -87,7 +93,7 @@ class Hub:
     _left: list[int] = field(default_factory=list)
     _asked: list[tuple[int, HeardMessage]] = field(default_factory=list)
     _slots: list[_Slot] = field(default_factory=list)
-    _flying: tuple[int, list[_Slot]] | None = None
+    _flying: deque[tuple[int, list[_Slot], int]] = field(default_factory=deque)  # with the count of requests
 
     def open(self, line: ClientLine, now: float, proven: bool = False) -> int:
         """Let a client in; return its number, 0 when there are too many. proven: it is known or has shown the
@@ -122,9 +128,7 @@ class Hub:
         try:
             requests, listed = split_message(data)
         except RequestError as error:
-            client.waiting += 1
-            self._slots.append(_Slot(number, [encode(Reply(error=str(error)))], False))
-            self._check_pace(number, client)
+            self._keep(client, _Slot(number, [encode(Reply(error=str(error)))], False))
             return
         slot = _Slot(number, [], listed)
         for request in requests:
@@ -136,14 +140,16 @@ class Hub:
                 self.drop(number, POLICY, STRANGER)
                 return
             slot.answers.append(self._request(number, client, item))
+        self._keep(client, slot)
+
+    def _keep(self, client: _Client, slot: _Slot) -> None:
+        """Keep a message for the next batch. Hang up on a client that asks for more than can be kept."""
         client.waiting += len(slot.answers)
         self._slots.append(slot)
-        self._check_pace(number, client)
-
-    def _check_pace(self, number: int, client: _Client) -> None:
-        """Hang up on a client that asks for more than can be kept until it is answered."""
+        if len(self._slots) == 1:
+            self.wake()
         if client.waiting > UNANSWERED:
-            self.drop(number, POLICY, TOO_FAST)
+            self.drop(slot.client, POLICY, TOO_FAST)
 
     def _proves(self, item: HeardMessage | Reply) -> bool:
         """Whether a request shows the token."""
@@ -175,23 +181,23 @@ class Hub:
         return None
 
     def take(self) -> RequestBatch | None:
-        """Return what came in since the last batch, None while that is not answered or nothing came."""
-        if self._flying is not None or not (self._joined or self._left or self._slots):
+        """Return what came in since the last batch; None if nothing came or too much is unanswered."""
+        if not (self._joined or self._left or self._slots):
+            return None
+        if self._flying and sum(count for _, _, count in self._flying) + len(self._asked) > PER_BATCH:
             return None
         self._number += 1
         batch = RequestBatch(self._number, tuple(self._joined), tuple(self._left), tuple(self._asked))
-        self._flying = self._number, self._slots
+        self._flying.append((self._number, self._slots, len(self._asked)))
         self._joined, self._left, self._asked, self._slots = [], [], [], []
-        for client in self.clients.values():
-            client.taken = 0
         return batch
 
     def give(self, result: BatchResult) -> None:
-        """Pass a result on to those it is for."""
+        """Pass a result on to those it is for. It answers all batches up to its number."""
         out: dict[int, list[tuple[bytes, bool]]] = {}
-        if self._flying is not None and result.number == self._flying[0]:
-            replies = iter(result.replies)
-            for slot in self._flying[1]:
+        replies = iter(result.replies)
+        while self._flying and self._flying[0][0] <= result.number:
+            for slot in self._flying.popleft()[1]:
                 answers = [next(replies) if answer is None else answer for answer in slot.answers]
                 client = self.clients.get(slot.client)
                 if client is not None:
@@ -199,7 +205,9 @@ class Hub:
                     data = b"[" + b",".join(answers) + b"]" if slot.listed else answers[0]
                     out.setdefault(slot.client, []).append((data, False))
                     client.line.answered(1)
-            self._flying = None
+        if result.number:
+            for client in self.clients.values():
+                client.taken = 0
         for number, data in result.events:
             out.setdefault(number, []).append((data, False))
         for picture in result.poses:
@@ -218,7 +226,7 @@ class Hub:
     @property
     def idle(self) -> bool:
         """Whether everything that came in has been answered."""
-        return self._flying is None and not self._slots
+        return not self._flying and not self._slots
 
     def check(self, now: float) -> None:
         """Hang up on those that have not shown the token in time."""

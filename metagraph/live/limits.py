@@ -158,11 +158,9 @@ class Share:
         """Return whether a client has had more than one that was turned away just now with what is as
         important.
         """
-        return any(
-            other != client
-            and at > now - HUNGRY
-            and as_important >= priority
-            and self.count(client) > self.count(other)
+        own = self.count(client)
+        return own > 0 and any(
+            other != client and at > now - HUNGRY and as_important >= priority and own > self.count(other)
             for other, (at, as_important) in self.turned_away.items()
         )
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -68,11 +69,17 @@ from metagraph.motion.skeleton import Pose
 from metagraph.playback.bml.reader import BmlBlock, read_block
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.alphabet import ALPHABET
-from metagraph.playback.life.items import find_line_start
-from metagraph.playback.life.track import Speech
-from metagraph.playback.life.utterances import find_soon, goes_on, is_paused, takes_more
+from metagraph.playback.life.items import LookAt, Speech, StayFrom, find_line_start
+from metagraph.playback.life.utterances import (
+    find_soon,
+    goes_on,
+    is_paused,
+    is_same_utterance,
+    takes_more,
+)
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.hearing import makers
+from metagraph.playback.planning.mood import MoodFrom
 from metagraph.playback.planning.plan_head import RECENT
 from metagraph.playback.planning.running_plan import CUT, RunningPlan
 from metagraph.playback.posing.overlay import Overlay
@@ -82,6 +89,8 @@ from metagraph.speech.spoken_so_far import spoken_until
 from metagraph.speech.spoken_text import read_spoken_line
 from metagraph.speech.word_gestures import telling
 
+UNSAID = "something else is said then"
+SAID = ("say", ADDED)  # the lanes of what is said
 AGAIN = 0.25  # seconds for which a layer without room is not tried again
 TIDY = 0.25  # seconds between two clean-ups of what is over
 KEPT = 10.0  # seconds for which reports and requests of the plan are kept after they are over
@@ -417,15 +426,28 @@ class LiveSession:
         keys = self.ledger.belonging(target) if ask.what else [x for x in known if known[x].client == owner]
         keys = [x for x in keys if not known[x].ended and (ask.what or x not in stays)]
         # What has begun and lasts is no longer in the ledger, but can still be ended.
-        lasting = [x.id for x in self.plan.track.items if getattr(x, "end", 0.0) > until]
+        track = self.plan.track
+        last: list[LookAt | Speech | StayFrom | MoodFrom] = [
+            *track.looks,
+            *track.speeches,
+            *track.stays,
+            *track.moods,
+        ]
+        lasting = [x.id for x in last if x.end > until]
         lasting += self.happenings.list_lasting()
         lasting = [x for x in dict.fromkeys(lasting) if x not in known]
         keys += [
-            x for x in lasting if (target in makers(x) if ask.what else x.startswith(mine) and x not in stays)
+            x
+            for x in lasting
+            if (
+                x.startswith(target) and target in makers(x)
+                if ask.what
+                else x.startswith(mine) and x not in stays
+            )
         ]
         if not keys:
             return Reply(id=ident, state="done", why=self._why_nothing(target, ask.what))
-        speeches = self.plan.track.speeches
+        speeches = track.speeches
         said = next((s.id for s in speeches if s.id in keys and goes_on(speeches, s.id, until)), None)
         spoken, word = None, None
         if said is not None:
@@ -546,7 +568,8 @@ class LiveSession:
                 self._tell_changed(key, ask, found.get(key, FoundAnswer()), out)
         for open_ in work.open.values():
             if open_.parts is None:
-                reply = self._settle(open_.key, found.get(open_.key, FoundAnswer()))
+                answer = FoundAnswer() if self._is_unsaid(open_) else found.get(open_.key, FoundAnswer())
+                reply = self._settle(open_.key, answer)
                 for each in (open_, *open_.also):
                     out.replies[each.place] = self._tell_added(each, reply)
             else:
@@ -564,8 +587,8 @@ class LiveSession:
         else:
             self.ledger.settle(key, found)
         why = f"too late by {ask.missed:.2f} s" if ask.missed > 0 and not found.why else found.why
-        if found.state == "refused" and not found.reports and ask.lane in ("say", ADDED):
-            why = "something more important is said then"
+        if found.state == "refused" and not found.reports and ask.lane in SAID:
+            why = UNSAID
         return Reply(
             id=ask.ident,
             state=found.said(ask.missed),  # type: ignore[arg-type]
@@ -576,11 +599,27 @@ class LiveSession:
             why=reword_for_client(why, ask.client),
         )
 
+    def _is_unsaid(self, open_: Open) -> bool:
+        """Return whether nothing of a line is said, so that the plan only has what was said before under its
+        id.
+        """
+        before, speeches = open_.adds, self.plan.track.speeches
+        same = before is not None and self.plan.track.last_speech(open_.key) is before
+        return (
+            same and self.ledger.known[open_.key].lane in SAID and not goes_on(speeches, open_.key, self.now)
+        )
+
     def _goes_on_from(self, open_: Open) -> bool:
         """Return whether what is said goes on from what was said last under its id."""
         speech, before = self.plan.track.last_speech(open_.key), open_.adds
         if speech is None or before is None or before.length is not None or speech is before:
             return False
+        if is_paused(speech.start) and not is_paused(before.start):  # it is paused at the same tick
+            speeches = self.plan.track.speeches
+            pieces = [s for s in speeches if s.id == open_.key and s.start >= before.start]
+            same = all(is_same_utterance(one, other) for one, other in pairwise(pieces))
+            first = pieces[0]
+            return same and (first.start == before.start or first.text == before.text)
         told = speech.timing is not None and before.timing is not None
         return (told and speech.start == before.start) or (not told and speech.start == before.end)
 
@@ -602,7 +641,11 @@ class LiveSession:
 
     def _end_waiting(self, key: str, ask: OpenAsk, reason: Reason, why: str) -> None:
         """Report that something has ended which was promised and has not begun."""
-        fixed = self.now + self.project.settings.lookahead
+        ahead = self.project.settings.lookahead
+        again = (
+            reason == "replaced" and ask.lane in SAID
+        )  # what takes its place begins as soon as a voice can
+        fixed = find_soon(self.now, ahead) if again else self.now + ahead
         self.happenings.end_waiting(key, ask, reason, why, self.now, self.plan, fixed)
 
     def _tell_added(self, open_: Open, reply: Reply) -> Reply:
@@ -631,6 +674,8 @@ class LiveSession:
         since = None if is_paused(began) else round_seconds(began)
         if is_paused(before.start):
             at = reply.at
+        if at is not None and speech.length is not None and at >= speech.end:  # something else cut it short
+            return Reply(id=reply.id, state="refused", why=UNSAID, notes=notes)
         return msgspec.structs.replace(reply, at=at, since=since, notes=notes)
 
     def _settle_block(self, open_: Open, found: Mapping[str, FoundAnswer]) -> Reply:

@@ -1,5 +1,5 @@
 """A session's lines in a process of their own, for a window that must not wait: reading, checking, writing
-happen there, and what is left for the window's thread is one batch a tick.
+happen there. What came in by a tick is left for the window's thread.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ class Relay:
 
     def tick(self, session: LiveSession, now: float) -> None:
         """Answer what came in and send what happened; at most as long as the session's tick takes."""
-        from metagraph.live.wire import exchange
+        from metagraph.live.wire import exchange, join_batches
 
-        batch = RequestBatch()
-        while batch.number == 0:
+        batches: list[RequestBatch] = []
+        while True:
             try:
                 data = self._in.get_nowait()
             except queue.Empty:
@@ -60,8 +60,8 @@ class Relay:
                 self.ready = _ready.decode(data)
                 self.error = self.ready.error or ""
                 continue
-            batch = unpack_batch(data)
-        result = exchange(session, now, batch)
+            batches.append(unpack_batch(data))
+        result = exchange(session, now, join_batches(batches))
         if result.number or result.events or result.poses:
             self._out.put(pack(result))
 

@@ -71,6 +71,10 @@ async def _talk(channel: ChildChannel, options: Options, out: queue.SimpleQueue[
             out.put(pack(batch))
         return None
 
+    def wake() -> None:
+        loop.call_soon(step)  # once all that waits on the lines is read
+
+    server.hub.wake = wake
     threading.Thread(target=listen, daemon=True).start()
     await server.run(step)
     await server.close()

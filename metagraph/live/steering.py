@@ -16,6 +16,7 @@ from metagraph.live.tick_work import Client, TickWork
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.items import find_line_start
 from metagraph.playback.life.utterances import (
+    find_forgotten,
     find_soon,
     find_stop,
     find_utterances,
@@ -25,7 +26,6 @@ from metagraph.playback.plan import Plan
 from metagraph.playback.planning.hearing import makers
 from metagraph.speech.spoken_so_far import spoken_until
 
-FORGOTTEN = 60.0  # seconds of silence after which nothing more is awaited of what was promised to go on
 INTERRUPTED = "it was interrupted by a request"
 SteeringRequest = a.Interrupt | a.Pause | a.Resume | a.Finish
 
@@ -51,10 +51,8 @@ class Steering:
 
     def find_open(self, plan: Plan, now: float) -> set[str]:
         """Return the keys of what is said and not over at `now`; note those that nothing came of for long."""
-        out = set(find_utterances(plan.track, "", now))
-        latest = {speech.id: speech for speech in plan.track.speeches if speech.id in out}
-        self._forgotten = [key for key, last in latest.items() if last.end < now - FORGOTTEN]
-        return out
+        self._forgotten = find_forgotten(plan.track, now)
+        return set(find_utterances(plan.track, "", now))
 
     def close_forgotten(self, now: float) -> list[a.AnyRequest]:
         """Return requests that finish those of which nothing came for long."""

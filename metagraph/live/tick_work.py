@@ -14,7 +14,7 @@ from metagraph.live.pose_stream import PoseFrame, Stream
 from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.plan import Plan
 
-THIN = 20.0  # seconds after which of a moving point only some places are kept
+THIN = 2.0  # seconds after which of a moving point only some places are kept
 COARSE = 0.25  # seconds between those
 
 

@@ -4,6 +4,7 @@ for a pipe.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class RequestBatch(Struct, frozen=True, array_like=True):
-    """Requests that came in since the last. number: counts up. joined, left: clients. asked: client and
+    """Requests that came in since the last batch. number: counts up. joined, left: clients. asked: client and
     request, in order.
     """
 
@@ -35,8 +36,8 @@ class PosePicture(Struct, frozen=True, array_like=True):
 
 
 class BatchResult(Struct, frozen=True, array_like=True):
-    """What a batch is answered with. number: the batch's, 0 for none. replies: JSON, one to each request in
-    order. events: client and JSON.
+    """What batches are answered with. number: of the last one, 0 for none. replies: JSON, one to each request
+    of all since the result before, in order. events: client and JSON.
     """
 
     number: int = 0
@@ -54,6 +55,16 @@ class Ready(Struct, frozen=True, omit_defaults=True):
     osc: tuple[str, int] | None = None
     token: bool = False
     error: str | None = None
+
+
+def join_batches(batches: Sequence[RequestBatch]) -> RequestBatch:
+    """Return batches that follow each other as one, which has the last one's number."""
+    return RequestBatch(
+        max((batch.number for batch in batches), default=0),
+        tuple(client for batch in batches for client in batch.joined),
+        tuple(client for batch in batches for client in batch.left),
+        tuple(asked for batch in batches for asked in batch.asked),
+    )
 
 
 def exchange(session: LiveSession, now: float, batch: RequestBatch | None) -> BatchResult:

@@ -146,7 +146,7 @@ def script() -> list[dict[str, Any]]:
                 "now": told,
                 "ask": [*ASKED.get(frame, []), *looks],
                 "sounds": sounds(frame),
-                "hear": frame % 7 == 6,
+                "hear": frame % 7 == 6 or frame == FRAMES - 1,
                 "show": frame in SHOWN,
             }
         )
@@ -156,7 +156,13 @@ def script() -> list[dict[str, Any]]:
         for n in range(1, UNHEARD + 1)
     ]
     leap = {"now": 1e9, "ask": [], "sounds": [], "hear": True, "show": True}
-    return [*out, *unheard, leap, leap]
+    end = now + 15.0 * UNHEARD + 2 * 3600.0
+    open_ = {"do": "say", "id": "open", "text": "Well", "more": True}  # nothing more of it comes
+    rest = [
+        {"now": end + 15.0 * n, "ask": [open_] * (n == 1), "sounds": [], "hear": True, "show": n == 7}
+        for n in range(1, 8)
+    ]
+    return [*out, *unheard, leap, leap, *rest]
 
 
 def in_python(export: Path, steps: list[dict[str, Any]], folder: Path) -> dict[str, Any]:
@@ -425,8 +431,10 @@ def test_the_script_has_something_of_everything(wanted: Made) -> None:
     assert found["shown"][FRAMES // 50 - 1]["spoken"] == ["Yes", "Yes"]
     assert {layer for _, _, layer, _, _ in found["events"]} == {"body", "arms", "head", "speech"}
     assert found["ids"][:5] == ["#1", "#2", "#3", "#4", "g"]
-    *times, heard, once, twice = [shown["now"] for shown in found["shown"]]
-    assert (once, twice) == pytest.approx((heard + 3600, heard + 7200))
+    *times, heard, once, twice, last = [shown["now"] for shown in found["shown"]]
+    assert (once, twice, last) == pytest.approx((heard + 3600, heard + 7200, heard + 7305))
+    forgotten = [e for e in found["events"] if e[4] == "open finished"]
+    assert [(e[0], twice + 60 < e[1] < last) for e in forgotten] == [("end", True)]
     told = [event[1] for event in found["events"]]
     assert told == sorted(told)
     assert sum(times[-1] < at <= heard for at in told) == 1000, "the latest are kept, and no more"

@@ -11,7 +11,15 @@ from metagraph.graph import requests as a
 from metagraph.live import hub as hubs
 from metagraph.live.hub import Hub, is_right_token
 from metagraph.live.messages import Hello
-from metagraph.live.wire import BatchResult, PosePicture, RequestBatch, pack, unpack_batch, unpack_result
+from metagraph.live.wire import (
+    BatchResult,
+    PosePicture,
+    RequestBatch,
+    join_batches,
+    pack,
+    unpack_batch,
+    unpack_result,
+)
 
 
 class Wire:
@@ -76,18 +84,51 @@ def test_answers_go_back_in_the_order_of_the_requests(wire: Wire) -> None:
     assert hub.idle
 
 
-def test_a_batch_is_answered_before_the_next_is_taken(wire: Wire) -> None:
+def test_what_comes_while_a_batch_is_unanswered_is_passed_on_at_once(wire: Wire) -> None:
     hub = Hub()
     number = hub.open(wire, 0.0)
     hub.message(number, '{"do":"nod"}')
     first = hub.take()
-    hub.message(number, '{"do":"shake"}')
-    assert hub.take() is None and not hub.idle
-    hub.give(answered(first))
+    hub.message(number, '[{"do":"shake"},7]')
     second = hub.take()
-    assert second is not None and second.number == 2
-    hub.give(answered(second))
-    assert wire.texts == ['"1:Nod"', '"1:Shake"']
+    assert first is not None and second is not None and second.number == 2
+    hub.message(number, '{"do":"blink"}')
+    hub.give(answered(join_batches([first, second])))
+    assert wire.texts[0] == '"1:Nod"' and json.loads(wire.texts[1])[0] == "1:Shake" and len(wire.sent) == 2
+    assert not hub.idle
+    hub.give(answered(hub.take()))
+    assert wire.texts[2:] == ['"1:Blink"'] and hub.idle
+
+
+def test_no_more_is_passed_on_while_too_much_is_unanswered() -> None:
+    hub = Hub()
+    numbers = [hub.open(Wire(), 0.0) for _ in range(4)]
+    for number in numbers[:3]:
+        hub.message(number, "[" + ",".join(['{"do":"nod"}'] * 500) + "]")
+    first = hub.take()
+    assert first is not None and len(first.asked) == 1500
+    hub.message(numbers[3], "[" + ",".join(['{"do":"nod"}'] * 500) + "]")
+    second = hub.take()
+    assert second is not None and len(second.asked) == 500
+    hub.message(hub.open(Wire(), 0.0), '{"do":"status"}')
+    assert hub.take() is None, "2000 are unanswered"
+    hub.give(answered(first))
+    third = hub.take()
+    assert third is not None and third.number == 3 and len(third.asked) == 1
+    hub.give(answered(join_batches([second, third])))
+    assert hub.idle
+
+
+def test_the_first_message_after_a_batch_wakes_who_takes_the_next(wire: Wire) -> None:
+    woken: list[int] = []
+    hub = Hub(wake=lambda: woken.append(1))
+    number = hub.open(wire, 0.0)
+    for text in ('{"do":"nod"}', "bad", '{"do":"nod"}'):
+        hub.message(number, text)
+    assert len(woken) == 1
+    hub.take()
+    hub.message(number, "bad")
+    assert len(woken) == 2
 
 
 def test_events_and_poses_need_no_batch(wire: Wire) -> None:

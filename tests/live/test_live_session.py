@@ -199,7 +199,7 @@ def test_pieces_of_one_tick_are_said_one_after_the_other_too(session: LiveSessio
     )
     assert [r["state"] for r in replies[:2]] == ["planned"] * 2
     assert [s.text for s in session.plan.track.speeches] == ["the boat left early"]
-    assert [r["why"] for r in replies[2:]] == ["something more important is said then"] * 2
+    assert [r["why"] for r in replies[2:]] == ["something else is said then"] * 2
 
 
 def test_a_text_is_said_behind_one_of_its_id(session: LiveSession) -> None:

@@ -64,6 +64,30 @@ def test_a_window_answers_clients_that_another_process_talks_to(sample: Project)
         relay.close(wait=True)
 
 
+def test_what_is_sent_while_other_requests_wait_is_answered_at_the_next_tick(sample: Project) -> None:
+    session, relay, begin = LiveSession(sample), Relay(Options(port=0, osc=None)), time.monotonic()
+    relay.start()
+    try:
+        until(lambda: relay.ready is not None, relay, session, begin)
+        assert relay.ready is not None
+        address = str(relay.ready.websocket)
+        with connect(address) as flood, connect(address) as line:
+            flood.send('{"do":"nod"}')
+            deadline = time.monotonic() + 30
+            while relay._in.empty():
+                assert time.monotonic() < deadline
+                time.sleep(0.005)
+            line.send('{"do":"interrupt","id":"now"}')
+            while relay._in.qsize() < 2:
+                assert time.monotonic() < deadline, "it waits until the other request is answered"
+                time.sleep(0.005)
+            relay.tick(session, time.monotonic() - begin)
+            assert json.loads(line.recv(timeout=30))["id"] == "now"
+            assert json.loads(flood.recv(timeout=30))["state"] in ("planned", "late")
+    finally:
+        relay.close(wait=True)
+
+
 def test_a_port_that_is_taken_is_told_to_the_window(sample: Project) -> None:
     session, begin = LiveSession(sample), time.monotonic()
     with socket.socket() as other:

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from metagraph.graph.model import Project
-from metagraph.live import steering
 from metagraph.live.live_session import LiveSession
+from metagraph.live.steering import INTERRUPTED
 from metagraph.playback.life.lips import compute_mouth_shapes
+from metagraph.playback.life.utterances import FORGOTTEN
 from metagraph.playback.planning.running_plan import plan_performance
 
 TICK = 1 / 60
@@ -78,7 +79,7 @@ def test_an_interrupt_stops_the_voice_at_a_sound_and_says_what_was_spoken(talk: 
     assert talk.opens(reply["at"] + 0.2, reply["at"] + 3.0) == 0
     assert talk.ends("a") == talk.ends("a/0") == talk.ends("a/1") == ["interrupted"]
     (end,) = [e for e in talk.heard if e["event"] == "ended" and e["id"] == "a"]
-    assert end["spoken"] == reply["spoken"] and end["why"] == steering.INTERRUPTED
+    assert end["spoken"] == reply["spoken"] and end["why"] == INTERRUPTED
     assert talk.session.plan.layers["arms"].cues[-1].end <= now + TICK + 0.1 + 0.41
 
 
@@ -164,7 +165,7 @@ def test_an_interrupt_knows_all_that_was_said_in_pieces(talk: Talk) -> None:
 
 def test_nothing_that_is_open_is_awaited_for_ever(talk: Talk) -> None:
     talk.ask(do="say", id="a", text="Well", more=True)
-    talk.wait(steering.FORGOTTEN - 2)
+    talk.wait(FORGOTTEN - 2)
     assert talk.ends("a") == []
     talk.wait(5.0)
     assert talk.ends("a") == ["finished"]
@@ -259,3 +260,68 @@ def test_what_is_said_anew_under_an_id_begins_anew(talk: Talk) -> None:
     talk.wait(3.0)
     ends = [e["at"] for e in talk.heard if e["event"] == "ended" and e["id"] == "a"]
     assert len(ends) == 2 and ends[1] == second["at"] > ends[0]
+
+
+def test_a_line_of_which_nothing_is_said_is_refused_also_where_its_id_was_said_before(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text="Well")
+    talk.wait(1.0)
+    for client, ident in ((2, "b"), (1, "a"), (2, "c")):
+        ask = {"do": "say", "id": ident, "text": "Well", "more": True}
+        talk.session.receive(client, json.dumps(ask))
+    replies = talk.go(talk.session.now + TICK / 2)
+    said = {s.id: s for s in talk.session.plan.track.speeches if s.start > talk.session.now}
+    assert [r["state"] for r in replies] == [
+        "planned" if x in said else "refused" for x in ("c2/b", "c1/a", "c2/c")
+    ]
+    assert [r["why"] for r in replies if r["state"] == "refused"] == ["something else is said then"] * 2
+    assert talk.ask(do="say", id="a", text="Yes")["at"] > talk.session.now
+    talk.wait(2.0)
+    assert talk.ends("a") == ["finished", "finished"]
+
+
+def test_what_takes_the_place_of_a_line_that_waits_is_heard_and_ends_for_itself(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text="Later", after=5.0)
+    talk.wait(0.5)
+    talk.ask(do="say", id="a", text="Now")
+    talk.wait(3.0)
+    told = [(e["event"], e.get("text"), e.get("reason")) for e in talk.heard if e["id"] == "a"]
+    assert told == [("ended", None, "replaced"), ("started", "Now", None), ("ended", "Now", "finished")]
+
+
+def test_a_piece_behind_which_another_line_is_said_first_is_refused(talk: Talk) -> None:
+    talk.ask(do="say", id="a", words=[["word", 0.0, 0.3]], more=True)
+    talk.wait(0.2)
+    talk.session.receive(
+        1, json.dumps({"do": "say", "id": "a", "words": [["behind", 0.6, 0.9]], "more": True})
+    )
+    talk.session.receive(2, json.dumps({"do": "say", "id": "b", "text": "Well"}))
+    first, second = talk.go(talk.session.now + TICK / 2)
+    assert second["state"] == "planned"
+    assert first["state"] == "refused" and first["why"] == "something else is said then"
+
+
+def test_what_is_added_to_a_line_that_is_paused_at_the_same_moment_goes_on_with_it(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text="It rains all day")
+    talk.session.receive(1, json.dumps({"do": "say", "id": "a", "text": ". Well", "more": True}))
+    talk.session.receive(1, json.dumps({"do": "pause", "what": "a"}))
+    added, _ = talk.go(talk.session.now + TICK / 2)
+    assert added["state"] == "planned"
+    talk.wait(1.0)
+    assert talk.ends("a") == []
+    talk.ask(do="resume")
+    talk.ask(do="finish", what="a")
+    talk.wait(4.0)
+    assert talk.ends("a") == ["finished"]
+
+
+def test_tokens_behind_a_text_that_was_said_whole_follow_it(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text="It rains all day.")
+    added = talk.ask(do="say", id="a", text=" So take a", more=True)
+    talk.ask(do="say", id="a", text=" coat.")
+    assert added["at"] > 1.0
+    talk.wait(6.0)
+    assert [e["text"] for e in talk.heard if e["event"] == "started"] == [
+        "It rains all day.",
+        " So take a coat.",
+    ]
+    assert talk.ends("a") == ["finished"]

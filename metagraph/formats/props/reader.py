@@ -101,7 +101,7 @@ class _Beside:
 
 
 def _list_parts(scene: Any) -> list[_Part]:
-    """Return the meshes of a scene of trimesh's, where it has them. Its `dump` would do it, but needs SciPy to
+    """Return the meshes of a scene, where it has them. The `dump` of trimesh would do it, but needs SciPy to
     copy colours.
     """
     out = []

@@ -150,8 +150,10 @@ def apart(speeches: Sequence[Speech]) -> list[Speech]:
 
 
 def behind(said: Sequence[Speech], new: Speech, now: float) -> Speech:
-    """Return a text moved to after another one of its id that is being said. said: in order."""
-    if new.timing is not None or new.line is not None or new.start > now:
+    """Return a text moved to after another one of its id that is being said, also if more of it may come.
+    said: in order.
+    """
+    if (new.timing is not None and not new.timing.paced) or new.line is not None or new.start > now:
         return new
     end = new.start
     for speech in said:

@@ -170,6 +170,7 @@ class Track:
             tuple([  # of an utterance that is not over all pieces
                 x for x in self.speeches
                 if x.start > seconds or x.end > seconds or (x.more and x.id in lasts)
+                or (x.over is not None and x.over > seconds)
             ]),
             tuple(self.modes[mode:]),
             tuple([x for n, x in enumerate(self.places) if x.start > seconds or places[x.name] == n]),

@@ -21,6 +21,7 @@ from metagraph.playback.planning.mood import MoodFrom
 PAUSED = 1e9  # seconds from which on lies what is paused
 VOICE = 0.04  # seconds in which a voice can begin; more than lips look ahead
 EARLIER = 0.03  # seconds by which it can stop sooner, since a mouth takes its time to close
+FORGOTTEN = 60.0  # seconds of silence after which nothing more is awaited of what was promised to go on
 TOGETHER = 1e-3  # seconds between two pieces of one utterance, at most
 
 
@@ -59,6 +60,12 @@ def find_utterances(track: Track, what: str, now: float) -> list[str]:
         if fits and speech.id not in out and goes_on(track.speeches, speech.id, now):
             out.append(speech.id)
     return out
+
+
+def find_forgotten(track: Track, now: float) -> list[str]:
+    """Return the ids of the utterances of which more was promised, and nothing has come for `FORGOTTEN`."""
+    silent = [s for s in track.speeches if s.more and s.end < now - FORGOTTEN]
+    return [s.id for s in silent if track.last_speech(s.id) is s]
 
 
 def find_stop(alphabet: Alphabet, track: Track, ident: str, soon: float, now: float) -> float:

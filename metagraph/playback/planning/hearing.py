@@ -251,7 +251,7 @@ def _steer(requests: Sequence[MetaRequest], heard: Heard, meant: Meaning, now: f
             if ask.what != "" and ask.what not in ids:  # it may have been said, and its gestures go on
                 ids.append(ask.what)
         for ident in ids:
-            made = {x for x in steered.idents() if ident in makers(x)}
+            made = {x for x in steered.idents() if x.startswith(ident) and ident in makers(x)}
             if ask.do == "interrupt":
                 stop = find_stop(meant.alphabet, steered.track, ident, soon, now)
                 steered.interrupt(ident, made, min(stop, now), now, soon)

@@ -214,6 +214,9 @@ private:
     }
 
     void plan_on() {
+        for (const std::string& what : utterances::find_forgotten(plan_->track, now_)) {
+            queue_.push_back(Json::object({{"do", "finish"}, {"id", what + ".0"}, {"what", what}}));
+        }
         const bool enough = plan_->end >= now_ + ahead_ - std::min(SLACK, ahead_ / 2);
         if (!queue_.empty() || !enough) {
             plan_ = hear(*graph_, *plan_, now_, queue_, enough ? plan_->end : now_ + ahead_, options_);

@@ -667,7 +667,7 @@ inline Ref<Heard> _steer(
         for (const auto& ident : ids) {
             Set<std::string> made;
             for (const auto& x : steered->idents()) {
-                if (lang::contains(hearing::makers(x), ident)) {
+                if (lang::starts_with(x, ident) && lang::contains(hearing::makers(x), ident)) {
                     made.insert(x);
                 }
             }

@@ -236,9 +236,9 @@ inline List<Ref<Speech>> apart(const List<Ref<Speech>>& speeches) {
     return out;
 }
 
-/// Return a text moved to after another one of its id that is being said. said: in order.
+/// Return a text moved to after another one of its id that is being said, also if more of it may come. said: in order.
 inline Ref<Speech> behind(const List<Ref<Speech>>& said, const Ref<Speech>& new_, double now) {
-    if (new_->timing != nullptr || new_->line.has_value() || new_->start > now) {
+    if ((new_->timing != nullptr && !new_->timing->paced) || new_->line.has_value() || new_->start > now) {
         return new_;
     }
     double end = new_->start;

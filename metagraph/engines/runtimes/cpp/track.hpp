@@ -347,7 +347,10 @@ inline Ref<Track> Track::since(double seconds) const {
     }
     List<Ref<Speech>> found3;
     for (const auto& x : this->speeches) {
-        if (x->start > seconds || x->end > seconds || (x->more && lang::contains(lasts, x->id))) {
+        if (x->start > seconds
+            || x->end > seconds
+            || (x->more && lang::contains(lasts, x->id))
+            || (x->over.has_value() && *x->over > seconds)) {
             found3.push_back(x);
         }
     }

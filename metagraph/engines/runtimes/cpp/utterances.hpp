@@ -22,12 +22,15 @@ namespace utterances {
 inline constexpr double PAUSED = 1000000000.0; // seconds from which on lies what is paused
 inline constexpr double VOICE = 0.04; // seconds in which a voice can begin; more than lips look ahead
 inline constexpr double EARLIER = 0.03; // seconds by which it can stop sooner, since a mouth takes its time to close
+// seconds of silence after which nothing more is awaited of what was promised to go on
+inline constexpr double FORGOTTEN = 60.0;
 inline constexpr double TOGETHER = 0.001; // seconds between two pieces of one utterance, at most
 inline double find_soon(double now, double lookahead);
 inline bool is_paused(double start);
 inline bool takes_more(const Ref<Speech>& speech);
 inline bool goes_on(const List<Ref<Speech>>& speeches, const std::string& ident, double now);
 inline List<std::string> find_utterances(const Ref<Track>& track, const std::string& what, double now);
+inline List<std::string> find_forgotten(const Ref<Track>& track, double now);
 inline double find_stop(
     const Ref<Alphabet>& alphabet,
     const Ref<Track>& track,
@@ -108,6 +111,23 @@ inline List<std::string> find_utterances(const Ref<Track>& track, const std::str
         }
     }
     return out;
+}
+
+/// Return the ids of the utterances of which more was promised, and nothing has come for `FORGOTTEN`.
+inline List<std::string> find_forgotten(const Ref<Track>& track, double now) {
+    List<Ref<Speech>> silent;
+    for (const auto& s : track->speeches) {
+        if (s->more && s->end < now - utterances::FORGOTTEN) {
+            silent.push_back(s);
+        }
+    }
+    List<std::string> found;
+    for (const auto& s : silent) {
+        if (track->last_speech(s->id) == s) {
+            found.push_back(s->id);
+        }
+    }
+    return found;
 }
 
 /// Return when the voice of an utterance stops: at the end of the current sound, at `soon` at the latest; at once if

@@ -9,7 +9,7 @@ import { emptyPlan } from "./plan.js";
 import { Player } from "./pose.js";
 import { spokenUntil } from "./spoken_so_far.js";
 import { StreamedVoice } from "./streamed_voice.js";
-import { explainEnd, findSoon } from "./utterances.js";
+import { explainEnd, findForgotten, findSoon } from "./utterances.js";
 import { LAYERS } from "./words.js";
 
 const SLACK = 2; // seconds the horizon may fall behind before it is moved on
@@ -131,6 +131,7 @@ export class Character {
 
   planOn() {
     const { graph, now, queue } = this;
+    for (const what of findForgotten(this.plan.track, now)) queue.push({ do: "finish", id: `${what}.0`, what });
     const far = this.plan.end >= now + this.ahead - Math.min(SLACK, this.ahead / 2);
     if (queue.length || !far) {
       this.plan = hear(graph, this.plan, now, queue, far ? this.plan.end : now + this.ahead, this.options);

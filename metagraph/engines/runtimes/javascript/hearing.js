@@ -308,7 +308,7 @@ function _steer(requests, heard, meant, now, soon) {
       }
     }
     for (const ident of ids) {
-      const made = new Set(steered.idents().filter((x) => makers(x).includes(ident)));
+      const made = new Set(steered.idents().filter((x) => x.startsWith(ident) && makers(x).includes(ident)));
       if (ask.do === "interrupt") {
         const stop = findStop(meant.alphabet, steered.track, ident, soon, now);
         steered.interrupt(ident, made, Math.min(stop, now), now, soon);

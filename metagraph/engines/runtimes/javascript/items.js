@@ -188,14 +188,14 @@ export function apart(speeches) {
 }
 
 /**
- * Return a text moved to after another one of its id that is being said. said: in order.
+ * Return a text moved to after another one of its id that is being said, also if more of it may come. said: in order.
  * @param {Speech[]} said
  * @param {Speech} new_
  * @param {number} now
  * @returns {Speech}
  */
 export function behind(said, new_, now) {
-  if (new_.timing !== null || new_.line !== null || new_.start > now) {
+  if ((new_.timing !== null && !new_.timing.paced) || new_.line !== null || new_.start > now) {
     return new_;
   }
   let end = new_.start;

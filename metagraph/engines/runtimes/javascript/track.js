@@ -136,7 +136,8 @@ export class Track {
     const stays = new Map([...this.stays.entries()].filter(([n, x]) => x.start <= seconds).map(([n, x]) => [x.layer, n]));
     return new Track(
       [...looks],
-      this.speeches.filter((x) => x.start > seconds || x.end > seconds || (x.more && lasts.has(x.id))),
+      this.speeches.filter((x) =>
+        x.start > seconds || x.end > seconds || (x.more && lasts.has(x.id)) || (x.over !== null && x.over > seconds)),
       this.modes.slice(mode),
       [...this.places.entries()].filter(([n, x]) => x.start > seconds || places.get(x.name) === n).map(([n, x]) => x),
       this.blinks.filter((x) => x.start > seconds),

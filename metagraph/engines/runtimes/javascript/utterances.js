@@ -16,6 +16,7 @@ import { but, maxOf, minOf, range } from "./basics.js";
 export const PAUSED = 1000000000; // seconds from which on lies what is paused
 export const VOICE = 0.04; // seconds in which a voice can begin; more than lips look ahead
 export const EARLIER = 0.03; // seconds by which it can stop sooner, since a mouth takes its time to close
+export const FORGOTTEN = 60; // seconds of silence after which nothing more is awaited of what was promised to go on
 export const TOGETHER = 0.001; // seconds between two pieces of one utterance, at most
 
 /**
@@ -75,6 +76,17 @@ export function findUtterances(track, what, now) {
     }
   }
   return out;
+}
+
+/**
+ * Return the ids of the utterances of which more was promised, and nothing has come for `FORGOTTEN`.
+ * @param {Track} track
+ * @param {number} now
+ * @returns {string[]}
+ */
+export function findForgotten(track, now) {
+  const silent = track.speeches.filter((s) => s.more && s.end < now - FORGOTTEN);
+  return silent.filter((s) => track.lastSpeech(s.id) === s).map((s) => s.id);
 }
 
 /**

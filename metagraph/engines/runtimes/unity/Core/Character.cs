@@ -209,6 +209,10 @@ namespace Metagraph
 
         private void PlanOn()
         {
+            foreach (string what in UtterancesRules.FindForgotten(Plan.Track, Now))
+            {
+                queue.Add(new Ask { Do = "finish", Id = what + ".0", What = what });
+            }
             bool far = Plan.End >= Now + options.Ahead - Math.Min(Slack, options.Ahead / 2);
             if (queue.Count > 0 || !far)
             {

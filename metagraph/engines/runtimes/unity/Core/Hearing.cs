@@ -551,7 +551,8 @@ namespace Metagraph
                 }
                 foreach (string ident in ids)
                 {
-                    var made = new HashSet<string>(steered.Idents().Where(x => Makers(x).Contains(ident)));
+                    var made = new HashSet<string>(steered.Idents().Where(x => x.StartsWith(ident, StringComparison.Ordinal)
+                        && Makers(x).Contains(ident)));
                     if (ask.Do == "interrupt")
                     {
                         var stop = UtterancesRules.FindStop(meant.Alphabet, steered.Track, ident, soon, now);

@@ -232,10 +232,12 @@ namespace Metagraph
             return out_;
         }
 
-        /// <summary>Return a text moved to after another one of its id that is being said. said: in order.</summary>
+        /// <summary>
+        /// Return a text moved to after another one of its id that is being said, also if more of it may come. said: in order.
+        /// </summary>
         public static Speech Behind(List<Speech> said, Speech new_, double now)
         {
-            if (new_.Timing != null || new_.Line != null || new_.Start > now)
+            if ((new_.Timing != null && !new_.Timing.Paced) || new_.Line != null || new_.Start > now)
             {
                 return new_;
             }

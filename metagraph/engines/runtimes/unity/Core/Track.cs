@@ -179,7 +179,10 @@ namespace Metagraph
             )).ToMap();
             return new Track(
                 looks.ToList(),
-                Speeches.Where(x => x.Start > seconds || x.End > seconds || (x.More && lasts.Contains(x.Id))).ToList(),
+                Speeches.Where(x => x.Start > seconds
+                    || x.End > seconds
+                    || (x.More && lasts.Contains(x.Id))
+                    || (x.Over != null && x.Over.Value > seconds)).ToList(),
                 PlainLists.Part(Modes, mode),
                 Places.Select((item, n) => (n, item)).Where(pair => pair.Item2.Start > seconds
                     || places[pair.Item2.Name] == pair.Item1).Select(pair => pair.Item2).ToList(),

@@ -16,6 +16,8 @@ namespace Metagraph
         public const double Paused = 1000000000.0; // seconds from which on lies what is paused
         public const double Voice = 0.04; // seconds in which a voice can begin; more than lips look ahead
         public const double Earlier = 0.03; // seconds by which it can stop sooner, since a mouth takes its time to close
+        // seconds of silence after which nothing more is awaited of what was promised to go on
+        public const double Forgotten = 60.0;
         public const double Together = 0.001; // seconds between two pieces of one utterance, at most
 
         /// <summary>
@@ -63,6 +65,15 @@ namespace Metagraph
                 }
             }
             return out_;
+        }
+
+        /// <summary>
+        /// Return the ids of the utterances of which more was promised, and nothing has come for `FORGOTTEN`.
+        /// </summary>
+        public static List<string> FindForgotten(Track track, double now)
+        {
+            var silent = track.Speeches.Where(s => s.More && s.End < now - Forgotten).ToList();
+            return silent.Where(s => track.LastSpeech(s.Id) == s).Select(s => s.Id).ToList();
         }
 
         /// <summary>

@@ -147,6 +147,8 @@ func update(seconds):
 
 
 func _plan_on():
+	for what in Utterances.find_forgotten(plan.track, now):
+		_queue.append(Asks.read({"do": "finish", "id": what + ".0", "what": what})[0])
 	var far = plan.end >= now + ahead - Util.least(SLACK, ahead / 2.0)
 	if _queue.size() > 0 or not far:
 		var asks = _queue

@@ -349,7 +349,7 @@ static func _steer(requests, heard, meant, now, soon):
 		for ident in ids:
 			var made = {}
 			for x in steered.idents():
-				if makers(x).has(ident):
+				if x.begins_with(ident) and makers(x).has(ident):
 					Util.add_to(made, x)
 			if ask.do == "interrupt":
 				var stop = Utterances.find_stop(meant.alphabet, steered.track, ident, soon, now)

@@ -184,9 +184,9 @@ static func apart(speeches):
 	return out
 
 
-# Return a text moved to after another one of its id that is being said. said: in order.
+# Return a text moved to after another one of its id that is being said, also if more of it may come. said: in order.
 static func behind(said, new, now):
-	if new.timing != null or new.line != null or new.start > now:
+	if (new.timing != null and not new.timing.paced) or new.line != null or new.start > now:
 		return new
 	var end = new.start
 	for speech in said:

@@ -238,7 +238,7 @@ class Track:
 				stays[x.layer] = n
 		var found3 = []
 		for x in self.speeches:
-			if x.start > seconds or x.end > seconds or (x.more and lasts.has(x.id)):
+			if (x.start > seconds or x.end > seconds or (x.more and lasts.has(x.id)) or (x.over != null and x.over > seconds)):
 				found3.append(x)
 		var found4 = []
 		for n in range(self.places.size()):

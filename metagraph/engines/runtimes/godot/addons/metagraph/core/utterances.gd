@@ -14,6 +14,7 @@ const Util = preload("util.gd")
 const PAUSED = 1000000000.0  # seconds from which on lies what is paused
 const VOICE = 0.04  # seconds in which a voice can begin; more than lips look ahead
 const EARLIER = 0.03  # seconds by which it can stop sooner, since a mouth takes its time to close
+const FORGOTTEN = 60.0  # seconds of silence after which nothing more is awaited of what was promised to go on
 const TOGETHER = 0.001  # seconds between two pieces of one utterance, at most
 
 
@@ -52,6 +53,19 @@ static func find_utterances(track, what, now):
 		if fits and not out.has(speech.id) and goes_on(track.speeches, speech.id, now):
 			out.append(speech.id)
 	return out
+
+
+# Return the ids of the utterances of which more was promised, and nothing has come for `FORGOTTEN`.
+static func find_forgotten(track, now):
+	var silent = []
+	for s in track.speeches:
+		if s.more and s.end < now - FORGOTTEN:
+			silent.append(s)
+	var found = []
+	for s in silent:
+		if track.last_speech(s.id) == s:
+			found.append(s.id)
+	return found
 
 
 # Return when the voice of an utterance stops: at the end of the current sound, at `soon` at the latest; at once if its sounds are
