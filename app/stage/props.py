@@ -13,6 +13,7 @@ from PySide6.QtCore import QObject, Signal
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.playback_source import ShownPlayback
+from app.translation import tr_error, tr_phrase
 from metagraph.common.network_paths import is_closed
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
@@ -90,13 +91,13 @@ class PropFigures(QObject):
             self.meshes.meshes[place] = mesh
             self.changed.emit()
             if mesh.notes:
-                self.told.emit(f"{place.name}: {'; '.join(mesh.notes)}")
+                self.told.emit(f"{place.name}: {'; '.join(map(tr_phrase, mesh.notes))}")
 
         self.jobs.start(
             f"prop {place}",
             lambda _: read_prop(place),
             keep,
-            lambda error: self.told.emit(str(error)),
+            lambda error: self.told.emit(tr_error(error)),
             quick=True,
         )
 

@@ -221,7 +221,7 @@ class PropsPanel(QWidget):
 
     def change(self, ident: str, prop: Prop, ends: bool) -> None:
         """Change a prop. ends: whether what follows is another step."""
-        self._edit(tr("Move {name}", name=prop.name), ident, prop, tr("prop {ident}", ident=ident))
+        self._edit(tr("Move {name}", name=prop.name), ident, prop, f"prop {ident}")
         if ends:
             self.document.finish_merging()
 

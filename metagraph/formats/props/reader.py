@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from metagraph.common.budgets import MIB, PICTURE_PIXELS
 from metagraph.common.files import guard_reader, is_file, read_file
-from metagraph.common.wording import phrase
+from metagraph.common.wording import phrase, plural_phrase
 from metagraph.errors import FileError
 from metagraph.formats.props.shapes import (
     MOST_TRIANGLES,
@@ -162,7 +162,13 @@ class _Builder:
                 path, phrase("none of its {count} triangles can be drawn", count=total), "", REMEDY
             )
         if left:
-            self.notes.append(phrase("{count:,} triangles without an area were left out", count=left))
+            self.notes.append(
+                plural_phrase(
+                    "{count:,} triangle without an area was left out",
+                    "{count:,} triangles without an area were left out",
+                    left,
+                )
+            )
         kept = sum(len(a[3]) for a in self.arrays)
         if share < 1.0:
             self.notes.append(

@@ -138,7 +138,7 @@ def test_parts_of_a_scene_stand_where_it_has_them(tmp_path: Path) -> None:
 def test_triangles_without_an_area_are_left_out_with_a_note(tmp_path: Path) -> None:
     (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n", "utf-8")
     mesh = read_prop(tmp_path / "a.obj")
-    assert len(mesh.triangles) == 1 and "1 triangles without an area were left out" in mesh.notes
+    assert len(mesh.triangles) == 1 and "1 triangle without an area was left out" in mesh.notes
 
 
 @pytest.mark.nightly
