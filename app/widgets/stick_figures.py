@@ -17,8 +17,8 @@ YAW = np.radians(28)  # seen a little from the side
 
 
 class StickFigures(QWidget):
-    """left: the clip as it is. right: what becomes of it, None while that is not known. marked: a joint of
-    either, by name.
+    """left: the clip as it is, None if there is none. right: what becomes of it, None while that is not
+    known. marked: a joint of either, by name. words: what stands under each.
     """
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -36,7 +36,7 @@ class StickFigures(QWidget):
     def sizeHint(self) -> QSize:
         return QSize(380, 420)
 
-    def show_clips(self, left: Clip, right: Clip | None) -> None:
+    def show_clips(self, left: Clip | None, right: Clip | None) -> None:
         self.left, self.right = left, right
         self._seen = {n: _Seen(clip) for n, clip in enumerate((left, right)) if clip is not None}
         self._timer.start()

@@ -29,9 +29,7 @@ def test_a_chair_stands_on_the_ground_with_its_back_behind_who_sits_there():
         at = points(make_chair((0.2, 0.45, -0.3), 0.17, turn)) - [0.2, 0, -0.3]
         assert abs(at[:, 1].min()) < 1e-3
         ahead = at @ [np.sin(turn), 0, np.cos(turn)]
-        assert ahead[at[:, 1] > 0.6].max() < -0.15, (
-            "only the back is above the seat, and that is behind"
-        )
+        assert ahead[at[:, 1] > 0.6].max() < -0.15, "only the back is above the seat, and that is behind"
         assert 0.8 < at[:, 1].max() < 0.95
 
 
