@@ -36,6 +36,7 @@ def _application() -> QApplication:
     from app import translation
     from app.features import check_studio_features
     from app.memory import free_memory_early
+    from app.widgets.spoken_items import install_spoken_items
     from preview.early_driver import load_soon
 
     leave_working_folder()
@@ -54,6 +55,7 @@ def _application() -> QApplication:
     QCoreApplication.setApplicationName("Metagraph")
     QCoreApplication.setOrganizationName("Metagraph")
     app = QApplication(sys.argv[:1])
+    install_spoken_items()
     app.setWindowIcon(QIcon(str(Path(__file__).parent / "look" / "metagraph.svg")))
     app.setDesktopFileName("metagraph")  # under Wayland the icon is that of the menu entry
     use_studio(check_studio_features(read_studio(find_studio_file(str(QSettings().value("studio", ""))))))
