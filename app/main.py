@@ -35,6 +35,7 @@ def prepare_application() -> QApplication:
 def _application() -> QApplication:
     from app import translation
     from app.features import check_studio_features
+    from app.look.comfort import scale_application
     from app.memory import free_memory_early
     from app.widgets.spoken_items import install_spoken_items
     from preview.early_driver import load_soon
@@ -54,6 +55,7 @@ def _application() -> QApplication:
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     QCoreApplication.setApplicationName("Metagraph")
     QCoreApplication.setOrganizationName("Metagraph")
+    scale_application()
     app = QApplication(sys.argv[:1])
     install_spoken_items()
     app.setWindowIcon(QIcon(str(Path(__file__).parent / "look" / "metagraph.svg")))

@@ -9,6 +9,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
+from app.look.comfort import get_comfort
 from app.translation import tr
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_names import HELPERS, split_joint_name
@@ -39,7 +40,8 @@ class StickFigures(QWidget):
     def show_clips(self, left: Clip | None, right: Clip | None) -> None:
         self.left, self.right = left, right
         self._seen = {n: _Seen(clip) for n, clip in enumerate((left, right)) if clip is not None}
-        self._timer.start()
+        if not get_comfort().still:
+            self._timer.start()
         self.update()
 
     def mark(self, left: str, right: str) -> None:
@@ -71,7 +73,8 @@ class StickFigures(QWidget):
 
     def _figure(self, painter: QPainter, box: QRectF, seen: _Seen, marked: str) -> None:
         clip, low = seen.clip, seen.low
-        seconds = time.monotonic() % max(clip.frames / clip.fps, 0.1)
+        length = max(clip.frames / clip.fps, 0.1)
+        seconds = length / 2 if get_comfort().still else time.monotonic() % length  # the middle tells most
         now = seen.places[min(clip.frames - 1, int(seconds * clip.fps))]
         scale = self._scale(box) / seen.height
         middle = (low[0] + seen.high[0]) / 2

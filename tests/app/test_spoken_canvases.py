@@ -1,4 +1,4 @@
-"""The canvases of the real window, as a screen reader is told of them: by Qt, and over AT-SPI."""
+"""The canvases of the real window, as screen readers report them: by Qt, and over AT-SPI."""
 
 from __future__ import annotations
 

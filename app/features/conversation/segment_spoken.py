@@ -1,4 +1,4 @@
-"""What a screen reader is told of a conversation's lanes: the segments of each speaker."""
+"""What screen readers report about a conversation's lanes: the segments of each speaker."""
 
 from __future__ import annotations
 

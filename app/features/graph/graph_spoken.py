@@ -1,4 +1,4 @@
-"""What a screen reader is told of the graph's canvas: stances, the actions of each node, and buttons."""
+"""What screen readers report about the graph's canvas: stances, the actions of each node, and buttons."""
 
 from __future__ import annotations
 

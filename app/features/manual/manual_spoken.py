@@ -1,4 +1,4 @@
-"""What a screen reader is told of a state machine drawn by hand: its states, aliases and links."""
+"""What screen readers report about a state machine drawn by hand: its states, aliases and links."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a screen reader is told of the timeline: the requests, and the actions that play."""
+"""What screen readers report about the timeline: the requests, and the actions that play."""
 
 from __future__ import annotations
 

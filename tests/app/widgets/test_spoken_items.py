@@ -1,4 +1,4 @@
-"""What is painted on a canvas, as a screen reader is told of it."""
+"""What is painted on a canvas, as screen readers report it."""
 
 from __future__ import annotations
 
