@@ -32,9 +32,12 @@ from PySide6.QtWidgets import QApplication, QFileDialog, QMessageBox, QWidget  #
 from shiboken6 import isValid  # noqa: E402
 
 from app import faults  # noqa: E402
+from app.features.character import character_panel  # noqa: E402
+from app.features.labelling import review_stage  # noqa: E402
 from app.main import make_window, prepare_application  # noqa: E402
 from app.project.files import SAMPLE  # noqa: E402
 from app.shell.workspaces import WORKSPACES  # noqa: E402
+from app.stage import gl_view  # noqa: E402
 
 Key, Held, Button = Qt.Key, Qt.KeyboardModifier, Qt.MouseButton
 KEYS = [Key(code) for code in (*range(0x20, 0x5B), *range(0x01000030, 0x0100003B))] + [
@@ -184,6 +187,9 @@ def main() -> int:
     options.add_argument("--height", type=int, default=720)
     given = options.parse_args()
     answer_nothing()
+    # In software each picture takes long: fewer and coarser ones leave time for events.
+    character_panel.FRAME = character_panel.SOFT_FRAME = review_stage.FRAME = 80
+    gl_view.ImageView.coarse = 3
     app = prepare_application()
     app.setQuitOnLastWindowClosed(False)
     window = make_window()
