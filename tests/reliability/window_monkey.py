@@ -77,7 +77,7 @@ class Monkey:
         self.slow: list[str] = []
         self.went: Counter[str] = Counter()
         self.in_dialog = 0
-        self.begun = 0.0
+        self.begun, self.said = 0.0, 0
 
     def go_on(self) -> None:
         if self.left <= 0:
@@ -93,7 +93,8 @@ class Monkey:
         took = time.perf_counter() - begun
         if took > SLOW and self.in_dialog == 0 and QApplication.activeModalWidget() is None:
             self.slow.append(f"event {self.done}: {took:.1f} s, {self.last[-1] if self.last else ''}")
-        if self.done % 1000 == 0:
+        if self.done % 1000 == 0 and self.done > self.said:
+            self.said = self.done
             print(f"{self.done} events, {time.perf_counter() - self.begun:.0f} s", flush=True)
 
     def event(self) -> None:
