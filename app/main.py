@@ -36,8 +36,10 @@ def prepare_application() -> QApplication:
 def _application() -> QApplication:
     from app import translation
     from app.features import check_studio_features
+    from app.look.comfort import scale_application
     from app.memory import free_memory_early
     from app.stage.software_drawing import apply_drawing_choice
+    from app.widgets.spoken_items import install_spoken_items
     from preview.early_driver import load_soon
 
     leave_working_folder()
@@ -56,7 +58,9 @@ def _application() -> QApplication:
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     QCoreApplication.setApplicationName(NAME)
     QCoreApplication.setOrganizationName(NAME)
+    scale_application()
     app = QApplication(sys.argv[:1])
+    install_spoken_items()
     app.setWindowIcon(QIcon(str(Path(__file__).parent / "look" / "metagraph.svg")))
     app.setDesktopFileName("metagraph")  # under Wayland the icon is that of the menu entry
     use_studio(check_studio_features(read_studio(find_studio_file(str(QSettings().value("studio", ""))))))

@@ -5,12 +5,13 @@ yellow.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
 from PySide6.QtWidgets import QApplication, QPushButton
 
+from app.look.comfort import get_comfort
 from app.look.domain_words import KIND_TITLES as KIND_TITLES
 from metagraph.graph.model import Kind
 from preview.typeface import FAMILY, WEIGHTS, find_typeface_file
@@ -42,6 +43,7 @@ class WindowTheme:
     sounds: Mapping[
         str, str
     ]  # areas of what is said; distinguished by colour-blind people by their lightness, too
+    high: bool = False  # contrast of at least 7:1
 
     def kind(self, kind: Kind | str) -> QColor:
         return QColor(self.kinds[kind])
@@ -88,14 +90,52 @@ LIGHT = WindowTheme(
     fills=_KINDS,
     sounds=_SOUNDS,
 )
+HIGH_DARK = replace(
+    DARK,
+    ground="#000000",
+    panel="#000000",
+    card="#0c0c0c",
+    field="#000000",
+    hover="#333333",
+    line="#8c8c8c",
+    text="#ffffff",
+    dim="#d6d6d6",
+    strong="#ffffff",
+    on_strong="#000000",
+    warning="#ffdb3a",
+    error="#ffa198",
+    kinds={"stance": "#62e3d2", "gesture": "#ffc062", "fidget": "#cdbbff", "transition": "#93c9ff"},
+    high=True,
+)
+HIGH_LIGHT = replace(
+    LIGHT,
+    ground="#ffffff",
+    panel="#ffffff",
+    card="#ffffff",
+    field="#ffffff",
+    hover="#dedede",
+    line="#626262",
+    text="#000000",
+    dim="#2e2e2e",
+    strong="#000000",
+    on_strong="#ffffff",
+    warning="#543e00",
+    error="#85120c",
+    kinds={"stance": "#0a4a43", "gesture": "#603c00", "fidget": "#472b91", "transition": "#0e427c"},
+    high=True,
+)
 THEMES = {"dark": DARK, "light": LIGHT}
+HIGH = {"dark": HIGH_DARK, "light": HIGH_LIGHT}
 KIND_MARKS = {"stance": "●", "gesture": "▲", "fidget": "◆", "transition": "➜"}  # never colour alone
 SOUND_MARKS = {"clause": "■", "response": "✓", "hesitation": "…"}
 
 
 def get_theme(name: str) -> WindowTheme:
-    """Return the theme of a name; the dark one for names that no theme has."""
-    return THEMES.get(name, DARK)
+    """Return the theme of a name, in high contrast if the user chose that; the dark one for names that no
+    theme has.
+    """
+    themes = HIGH if get_comfort().contrast else THEMES
+    return themes.get(name, themes["dark"])
 
 
 def make_palette(look: WindowTheme) -> QPalette:
@@ -246,8 +286,9 @@ def apply_theme(app: QApplication, look: WindowTheme) -> None:
         app.setProperty("styled", True)
         app.setStyle("Fusion")
         app.setFont(make_window_font())
-    if app.property("look") != look.name:
-        app.setProperty("look", look.name)
+    shown = f"{look.name}{' high' if look.high else ''}"
+    if app.property("look") != shown:
+        app.setProperty("look", shown)
         app.setPalette(make_palette(look))
         app.setStyleSheet(make_style_sheet(look))
 

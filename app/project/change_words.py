@@ -13,7 +13,7 @@ from app.translation import format_number, make_lazy_texts, tr, tr_plural
 from metagraph.graph.model import LAYERS, Action, Project, Settings, Timing
 
 # What a field is called in Properties, and how its value is written.
-SECONDS, NUMBER, WORD, STANCE, TAGS = "seconds", "number", "word", "stance", "tags"
+SECONDS, NUMBER, WORD, STANCE, TAGS, YES = "seconds", "number", "word", "stance", "tags", "yes"
 FIELDS: Mapping[str, tuple[str, str]] = make_lazy_texts(
     lambda: {
         "start": (tr("Start"), SECONDS),
@@ -40,6 +40,9 @@ FIELDS: Mapping[str, tuple[str, str]] = make_lazy_texts(
         "memory": (tr("Memory"), SECONDS),
         "rest": (tr("Rest"), SECONDS),
         "variety": (tr("Variety"), NUMBER),
+        "never_twice": (tr("Never twice in a row"), YES),
+        "wait": (tr("Maximum wait"), SECONDS),
+        "lookahead": (tr("Look ahead"), SECONDS),
     }
 )
 _COUNTS: Mapping[str, Callable[[int], str]] = {
@@ -61,7 +64,8 @@ def describe_edit(text: str, before: Project, after: Project) -> str:
         return text
     if not actions:
         changes = _changed_fields(before.settings, after.settings)
-        return _one_value(changes, before, after) if len(changes) == 1 else text
+        known = len(changes) == 1 and changes.keys() <= FIELDS.keys()
+        return _one_value(changes, before, after) if known else text
     whom = _name_actions(actions)
     fields_changed = {name for old, new in actions for name in _action_changes(old, new)}
     if len(fields_changed) != 1 or not fields_changed <= FIELDS.keys():
@@ -125,6 +129,8 @@ def _show(form: str, value: Any, project: Project) -> str:
         return ", ".join(value) or tr("none")
     if value is None:
         return tr("automatic")
+    if form == YES:
+        return tr("yes") if value else tr("no")
     if form == WORD:
         return str(KIND_TITLES.get(value) or tr(value)).lower()
     return format_number(value, ".2f" if form == SECONDS else "g")

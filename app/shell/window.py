@@ -12,6 +12,7 @@ from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEve
 from PySide6.QtWidgets import QAbstractButton, QApplication, QMainWindow
 
 from app.look import icons
+from app.look.comfort import read_comfort
 from app.look.theme import apply_theme, get_theme
 from app.project.document import Document
 from app.project.files import Files
@@ -21,6 +22,7 @@ from app.project.learned import Learned
 from app.project.second_start import SecondStarts
 from app.project.watching import Watcher
 from app.shell.actions import Actions, Command, Standard
+from app.shell.comfort_menu import make_comfort_command
 from app.shell.context import Contribute, Contribution, HeaderItem, Services
 from app.shell.fault_dialog import FaultTeller
 from app.shell.header import Header
@@ -110,6 +112,8 @@ class Window(QMainWindow):
         kept: Any = shell.settings.value("theme") or get_studio().theme
         if kept == "dark" or kept == "light":
             session.look.name = kept
+        if read_comfort().still:
+            session.transport.set_playing(False)
         apply_theme(_application(), get_theme(session.look.name))
         self.contributions = [*(contribute(shell) for contribute in features), self._own()]
         self.places = shell.places = shell.services.add(
@@ -161,6 +165,7 @@ class Window(QMainWindow):
                     study=True,
                 ),
                 make_language_command(self.shell, self.language_chosen.emit),
+                make_comfort_command(self.shell),
                 Command(
                     "show_all",
                     "&View",

@@ -9,6 +9,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
+from app.look.comfort import get_comfort
 from app.translation import tr
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_names import HELPERS, split_joint_name
@@ -17,8 +18,8 @@ YAW = np.radians(28)  # seen a little from the side
 
 
 class StickFigures(QWidget):
-    """left: the clip as it is. right: what becomes of it, None while that is not known. marked: a joint of
-    either, by name.
+    """left: the clip as it is, None if there is none. right: what becomes of it, None while that is not
+    known. marked: a joint of either, by name. words: what stands under each.
     """
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -36,10 +37,11 @@ class StickFigures(QWidget):
     def sizeHint(self) -> QSize:
         return QSize(380, 420)
 
-    def show_clips(self, left: Clip, right: Clip | None) -> None:
+    def show_clips(self, left: Clip | None, right: Clip | None) -> None:
         self.left, self.right = left, right
         self._seen = {n: _Seen(clip) for n, clip in enumerate((left, right)) if clip is not None}
-        self._timer.start()
+        if not get_comfort().still:
+            self._timer.start()
         self.update()
 
     def mark(self, left: str, right: str) -> None:
@@ -71,7 +73,8 @@ class StickFigures(QWidget):
 
     def _figure(self, painter: QPainter, box: QRectF, seen: _Seen, marked: str) -> None:
         clip, low = seen.clip, seen.low
-        seconds = time.monotonic() % max(clip.frames / clip.fps, 0.1)
+        length = max(clip.frames / clip.fps, 0.1)
+        seconds = length / 2 if get_comfort().still else time.monotonic() % length  # the middle tells most
         now = seen.places[min(clip.frames - 1, int(seconds * clip.fps))]
         scale = self._scale(box) / seen.height
         middle = (low[0] + seen.high[0]) / 2

@@ -20,6 +20,14 @@ def _command(name: str) -> Open:
     return lambda w, _: w.do(name)
 
 
+def _compare(w: Handles, _: Path) -> None:
+    from app.features.files.compare_dialog import CompareDialog, OtherVersion
+
+    now = w.document.project
+    then = OtherVersion("then", lambda: edits.remove_actions(now, [next(now.actions()).id]), ROOT)
+    CompareDialog(now, (then,), w.shell.jobs, ROOT, w.window).open()
+
+
 def _actions(w: Handles, count: int = 2) -> tuple[str, ...]:
     chosen = tuple(a.id for a in w.document.project.actions() if a.kind == "gesture")[:count]
     w.session.selection.select_actions(chosen)
@@ -161,6 +169,7 @@ DIALOGS: dict[str, Open] = {
     "extras": _command("extras"),
     "news": _command("news"),
     "export": _command("export"),
+    "compare": _compare,
     "label": _label,
     "patterns": _command("patterns"),
     "compatibility": _command("compatibility"),

@@ -1,5 +1,6 @@
-"""Draw trails of hands and head over the character: where they were and will be within 1.5 s. They show arcs,
-spacing and pops at a glance. While two states of an action are compared, both have trails.
+"""Draw trails of hands and head over the character: where they were and will be within 1.5 s, live where they
+were. They show arcs, spacing and pops at a glance. While two states of an action are compared, both have
+trails.
 """
 
 from __future__ import annotations
@@ -46,11 +47,17 @@ class TrailSamples:
             return nothing
         roles = anatomy.project_roles(shown.project)
         known = [role for role, _ in ROLES if role in roles]
-        if shown is not self._of or len(self._samples) > KEPT:
+        now, last, span = round(seconds * RATE), int(shown.length * RATE), int(SPAN * RATE)
+        live = shown.over is not None
+        was_live = self._of is not None and self._of.over is not None
+        goes_on = live and was_live and now >= max(self._samples, default=0)
+        if (shown is not self._of and not goes_on) or len(self._samples) > KEPT:
             self.forget()
-            self._of = shown
-        now, last = round(seconds * RATE), int(shown.length * RATE)
-        wanted = range(max(0, now - int(SPAN * RATE)), min(last, now + int(SPAN * RATE)) + 1)
+        self._of = shown
+        if live:  # only the past is known, and stays: one new pose a picture, not one for each point
+            wanted = sorted(n for n in {*self._samples, now} if now - span <= n <= now)
+        else:
+            wanted = list(range(max(0, now - span), min(last, now + span) + 1))
         missing = [n for n in wanted if n not in self._samples]
         if missing and known:
             pose = shown.pose(np.array(missing) / RATE)
@@ -81,7 +88,8 @@ class Trails(QWidget):
         panel.performance.document.changed.connect(self._forget)
 
     def _changed(self) -> None:
-        self._forget()
+        if self.panel.performance.shown.over is None:
+            self._forget()
         self.show_or_hide(self.on)
 
     def _forget(self, *_: object) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt
@@ -37,6 +37,7 @@ from app.features.conversation.segment_lanes import (
     measure_least_lane_height,
 )
 from app.features.conversation.segment_paint import SegmentScene, paint_empty_conversation, paint_segments
+from app.features.conversation.segment_spoken import list_segment_items
 from app.features.conversation.sound_reading import Sounds
 from app.look.theme import get_theme
 from app.project.document import Edit
@@ -45,6 +46,7 @@ from app.widgets.gesture import PointerHand
 from app.widgets.lane_geometry import LEFT, LaneScale
 from app.widgets.lane_paint import paint_badge, paint_playhead
 from app.widgets.memo import Once
+from app.widgets.spoken_items import SpokenItem, tell_spoken_focus
 from metagraph.graph.conversation.model import Conversation, get_side_name
 from metagraph.graph.edit_error import EditError
 
@@ -147,6 +149,10 @@ class SegmentView(QWidget):
             if left < LEFT or right > self.width():
                 self.look_at(found.start - 0.3 * (self.width() - LEFT) / self.each)
 
+    def list_spoken_items(self) -> Sequence[SpokenItem]:
+        of, size = self.conversation(), (float(self.width()), float(self.height()))
+        return list_segment_items(of, self.scale(), size, self.editing) if of is not None else ()
+
     def _changed(self) -> None:
         self._make_room()
         self.update()
@@ -154,6 +160,7 @@ class SegmentView(QWidget):
     def _chosen(self) -> None:
         self.reveal()
         self.update()
+        tell_spoken_focus(self)
 
     def _staged(self) -> None:
         self._stop_dragging()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from pathlib import Path
 
 from PySide6.QtWidgets import QMenu
 
@@ -110,6 +111,23 @@ class FileFeature(Feature):
 
         self.shell.jobs.start(
             tr("Reading earlier versions"), lambda _: find_versions(path, now), show, self.files.show_failure
+        )
+
+    def compare(self) -> None:
+        from app.features.files.compare_dialog import CompareDialog, OtherVersion, list_other_versions
+
+        path, now = self.document.path, self.document.project
+        folder = self.document.folder or Path()
+
+        def show(others: tuple[OtherVersion, ...]) -> None:
+            if self.document.path == path:
+                CompareDialog(now, others, self.shell.jobs, folder, self.shell.widget).open()
+
+        self.shell.jobs.start(
+            tr("Looking for versions"),
+            lambda _: list_other_versions(path) if path is not None else (),
+            show,
+            self.files.show_failure,
         )
 
     # --- clips
@@ -220,6 +238,14 @@ COMMANDS = (
         FileFeature.show_versions,
         tip=tr_noop("Open a version that an earlier save kept, and set how many versions are kept"),
         enabled=FileFeature.is_saved,
+    ),
+    Command(
+        "compare",
+        FILE,
+        "save",
+        tr_noop("Co&mpare versions…"),
+        FileFeature.compare,
+        tip=tr_noop("Show what is new, gone or changed since an earlier version, in Git or in another file"),
     ),
     Command(
         "import",

@@ -46,6 +46,7 @@ from app.features.graph.graph_menus import make_ends_menu, make_menu_for
 from app.features.graph.graph_painter import paint_graph
 from app.features.graph.graph_parts import Parts, find_stale_region, list_graph_parts
 from app.features.graph.graph_pictures import Beat, GraphPictures, find_graph_pictures
+from app.features.graph.graph_spoken import list_graph_items
 from app.features.graph.graph_words import count_machine, describe_graph_hit, describe_same_stances
 from app.look.theme import get_theme
 from app.project.document import Document
@@ -57,6 +58,7 @@ from app.widgets.gesture import PointerHand
 from app.widgets.memo import Once
 from app.widgets.mime import load_of
 from app.widgets.soon import Soon
+from app.widgets.spoken_items import SpokenItem, tell_spoken_change, tell_spoken_focus
 from metagraph.graph.model import Kind, Project, Stance
 from metagraph.graph.same_stances import find_same_stances
 
@@ -252,6 +254,7 @@ class Canvas(QWidget):
     def _edited(self, before: Project, after: Project) -> None:
         if before.graphs is not after.graphs:
             self._layout = None
+            tell_spoken_change(self)
         if before.clips is not after.clips:  # pictures may be others
             self.update()
         else:
@@ -260,6 +263,7 @@ class Canvas(QWidget):
     def _moved_on(self) -> None:
         self.first_rows.clear()
         self._stale()
+        tell_spoken_change(self)
 
     @property
     def widget(self) -> QWidget:
@@ -276,6 +280,11 @@ class Canvas(QWidget):
 
     def refuse(self, words: str) -> None:
         self.acts.refused.emit(words)
+
+    # --- for screen readers
+
+    def list_spoken_items(self) -> Sequence[SpokenItem]:
+        return list_graph_items(self.layout_now(), self._look(GraphPictures()), self.misfits)
 
     # --- mouse
 
@@ -438,6 +447,7 @@ class Canvas(QWidget):
         kept = self.session.selection.actions if extend else ()
         self.session.selection.select_actions((*(i for i in kept if i != action), action))
         self._scroll_to(action)
+        tell_spoken_focus(self)
 
     def _scroll_to(self, action: str) -> None:
         found = self.document.project.action(action)

@@ -202,7 +202,7 @@ COMMANDS = (
         study=True,
     ),
     Command(
-        "stance_earlier",
+        "list_stance_earlier",
         MENU,
         "stances",
         tr_noop("Move stance &left"),
@@ -215,7 +215,7 @@ COMMANDS = (
         when="meta",
     ),
     Command(
-        "stance_later",
+        "list_stance_later",
         MENU,
         "stances",
         tr_noop("Move stance &right"),

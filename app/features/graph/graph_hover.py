@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.features.graph.graph_layout import GraphHit
 from app.features.graph.graph_look import NOWHERE
+from app.look.comfort import get_comfort
 from app.stage.session import StageSession
 
 PAUSE = 350  # milliseconds over a row before it plays, over a chip during a drag before it becomes current
@@ -56,6 +57,8 @@ class Hover:
         if held is not None:
             if held.area == "chip" and held.ident:
                 self.session.place.set_stance(held.ident)
+        elif get_comfort().still:
+            return  # nothing plays until it is asked for
         elif self.hit.area in ROWS and self.hit.ident and self.session.transport.show != "clip":
             self._shown = self.session.transport.show == "plan" or self._shown
             self.session.show_context(self.hit.ident)

@@ -194,8 +194,10 @@ def lay_out_canvas(
         if top < height - FOOT - 320 and whole:
             break
     if top > height - FOOT - LEAST_NODES:  # names alone take too much, too
-        chips = _chips(project, graph, width, widths, TIGHT, same or {})
-        top = chips[-1].rect.bottom() + 2 * GRID
+        tight = _chips(project, graph, width, widths, TIGHT, same or {})
+        if tight[-1].rect.bottom() < chips[-1].rect.bottom():  # else nothing is gained by cutting names
+            chips = tight
+            top = chips[-1].rect.bottom() + 2 * GRID
     actions = {kind: graph.of(stance, kind) if stance else () for kind in BESIDE}
     counts = {kind: len(found) for kind, found in actions.items()}
     found = graph.stances.get(stance or "")

@@ -10,6 +10,7 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QWidget
 
 from app.features.graph.graph_layout import Layout
+from app.look.comfort import get_comfort
 from app.stage.thumbnails import Thumbnails
 from metagraph.graph.model import MetaGraph
 
@@ -69,5 +70,6 @@ class Beat:
         if self._rest > 0:  # jobs keep the processor busy: the stance moves more slowly, the window does not
             self._rest -= 1
             return
-        self.count += 1
+        if not get_comfort().still:
+            self.count += 1
         self.call()

@@ -9,6 +9,7 @@ from PySide6.QtCore import QEvent, QPoint, QRect, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QHelpEvent, QImage, QMouseEvent, QPainter, QPaintEvent, QPen, QResizeEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
+from app.look.comfort import get_comfort
 from app.look.shortening import shorten_to_lines_in_font
 from app.look.theme import get_theme
 from app.stage.session import StageSession
@@ -47,7 +48,8 @@ class GroupSheet(QWidget):
         self._beat = 0
         self._timer = QTimer(self, interval=BEAT)
         self._timer.timeout.connect(self._next)
-        self._timer.start()
+        if not get_comfort().still:
+            self._timer.start()
         self.setAccessibleName(tr("Clips of the group"))
         self.setMouseTracking(True)
         thumbnails.ready.connect(self._picture_came)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSizeF, Qt, QTimer, Signal
@@ -33,6 +33,7 @@ from app.features.manual.drags.pan import ManualPan
 from app.features.manual.manual_overlay import ManualMarks, find_playing_state, paint_over
 from app.features.manual.manual_pictures import ManualPictures
 from app.features.manual.manual_scene import NODE, NOTHING, ManualScene, ManualView, fit_view
+from app.features.manual.manual_spoken import list_manual_items
 from app.look.plural import count_clips
 from app.look.theme import get_theme
 from app.project.document import Document
@@ -42,6 +43,7 @@ from app.stage.thumbnails import Thumbnails
 from app.translation import tr, tr_error
 from app.widgets.gesture import PointerHand
 from app.widgets.mime import load_of
+from app.widgets.spoken_items import SpokenItem
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import edits as manual_edits
 from metagraph.graph.manual.machine import ANY
@@ -120,6 +122,10 @@ class ManualCanvas(QWidget):
                 manual_edits.get_machine(self.document.project, self.session.place.layer)
             )
         return self._scene
+
+    def list_spoken_items(self) -> Sequence[SpokenItem]:
+        selection = self.session.selection
+        return list_manual_items(self.scene(), self.view, selection.states, selection.links)
 
     def look_at(self, view: ManualView) -> None:
         """Show another part, drawn roughly until it rests."""

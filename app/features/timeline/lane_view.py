@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
@@ -27,6 +28,7 @@ from app.features.timeline.lane_keys import LaneKeys
 from app.features.timeline.lane_menu import make_request_marks_menu
 from app.features.timeline.lane_picture import paint_lanes
 from app.features.timeline.lane_span import LaneSpan
+from app.features.timeline.lane_spoken import list_lane_items
 from app.features.timeline.lane_tips import describe_place
 from app.features.timeline.lane_titles import LaneTitles, read_lane_heights
 from app.features.timeline.ruler import Ruler
@@ -53,6 +55,7 @@ from app.widgets.lane_geometry import (
 from app.widgets.lane_paint import paint_badge, paint_playhead
 from app.widgets.memo import Once
 from app.widgets.request_menu import STAGE, make_request_menu
+from app.widgets.spoken_items import SpokenItem, tell_spoken_focus
 from metagraph.graph.model import LAYERS
 
 LEAST, LEAST_BESIDE = 38, 32  # pixels of a layer in which its two rows are read; just so, beside other seeds'
@@ -106,6 +109,7 @@ class Lanes(LaneSpan):
         session.transport.moved.connect(self._playhead)
         for signal in (session.look.changed, session.selection.changed, session.onstage.performance_changed):
             signal.connect(self.update)
+        session.onstage.performance_changed.connect(lambda: tell_spoken_focus(self))
 
     def marks(self) -> list[RequestMark]:
         """Return the requests as they are drawn now."""
@@ -145,6 +149,9 @@ class Lanes(LaneSpan):
         if mark is not None and not LEFT <= mark.rect.left() <= self.width() - 60:
             self.first = max(0.0, mark.at - 0.3 * (self.width() - LEFT) / self.each)
         self.update()
+
+    def list_spoken_items(self) -> Sequence[SpokenItem]:
+        return list_lane_items(self)
 
     # --- painting
 

@@ -5,8 +5,8 @@ added, removed or changed.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass
-from typing import Any
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, Literal
 
 import msgspec
 
@@ -49,23 +49,43 @@ _REST = {
 _UNSEEN = ("id", "digest", "clip_name", "clip_sha256")  # of no use to a reader
 
 
+Fate = Literal["added", "removed", "changed"]
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A thing that differs in two states of a project. words: a line about it. part: what of the project it
+    is in, such as "clips", "stances" or "actions". ident: its id there, "" for what there is one of.
+    """
+
+    fate: Fate
+    words: str
+    part: str
+    ident: str = ""
+
+
 def describe_differences(before: Project, after: Project) -> list[str]:
     """Return what was done to `before` to make it `after`, one line a thing, in the order of the project
     file.
     """
+    return [one.words for one in list_differences(before, after)]
+
+
+def list_differences(before: Project, after: Project) -> list[Difference]:
+    """Return what differs in `after` from `before`, in the order of the project file."""
     if before is after:
         return []
-    lines: list[str] = []
+    out: list[Difference] = []
     for name, word in _REST.items():
         old, new = getattr(before, name), getattr(after, name)
         if old is not new and old != new:
-            lines.append(_line(word, "changed", _what(old, new)))
+            out.append(_difference(name, word, "changed", _what(old, new)))
     for name, word in _NAMED.items():
-        lines += _keyed(word, getattr(before, name), getattr(after, name))
+        out += _keyed(name, word, getattr(before, name), getattr(after, name))
     for layer in LAYERS:
         old, new = before.graphs[layer], after.graphs[layer]
-        lines += _keyed(phrase("Stance"), old.stances, new.stances, layer)
-        lines += _keyed("", old.actions, new.actions, layer)
+        out += _keyed("stances", phrase("Stance"), old.stances, new.stances, layer)
+        out += _keyed("actions", "", old.actions, new.actions, layer)
         if old.start != new.start:
             names = [
                 f"'{g.stances[g.start].name}'"
@@ -77,19 +97,23 @@ def describe_differences(before: Project, after: Project) -> list[str]:
             words = phrase(
                 "Start stance of {layer}: {before} → {after}", layer=_plain(layer), before=first, after=then
             )
-            lines.append(words)
+            out.append(Difference("changed", words, "start"))
         if old.weights != new.weights:
             weights = phrase("Weights of {layer}", layer=_plain(layer))
-            lines.append(_line(weights, "changed", _what(old.weights, new.weights)))
+            out.append(_difference("weights", weights, "changed", _what(old.weights, new.weights)))
         old_machine, new_machine = before.manual.get(layer), after.manual.get(layer)
         if old_machine != new_machine:
             machine = phrase("Manual state machine ({layer})", layer=_plain(layer))
-            lines.append(_line(machine, _fate(old_machine, new_machine)))
-    return lines
+            out.append(_difference("manual", machine, _fate(old_machine, new_machine)))
+    return out
 
 
-def _line(what: str, fate: str, how: str = "") -> str:
-    """Return a line: what it is, what became of it, and which fields differ."""
+def _difference(part: str, what: str, fate: Fate, how: str = "", ident: str = "") -> Difference:
+    """Return a difference: what it is, what became of it, and which fields differ."""
+    return Difference(fate, _line(what, fate, how), part, ident)
+
+
+def _line(what: str, fate: Fate, how: str) -> str:
     if fate == "added":
         return phrase("{what} added", what=what)
     if fate == "removed":
@@ -104,11 +128,13 @@ def _plain(word: str) -> str:
     return Phrase(word, {})
 
 
-def _fate(old: object, new: object) -> str:
+def _fate(old: object, new: object) -> Fate:
     return "added" if old is None else "removed" if new is None else "changed"
 
 
-def _keyed(word: str, before: Mapping[str, Any], after: Mapping[str, Any], layer: str = "") -> Iterator[str]:
+def _keyed(
+    part: str, word: str, before: Mapping[str, Any], after: Mapping[str, Any], layer: str = ""
+) -> Iterator[Difference]:
     if before is after:
         return
     for ident in dict.fromkeys((*before, *after)):
@@ -126,7 +152,7 @@ def _keyed(word: str, before: Mapping[str, Any], after: Mapping[str, Any], layer
             else phrase("{kind} '{name}'", kind=kind, name=name)
         )
         fate = _fate(old, new)
-        yield _line(title, fate, _what(old, new) if fate == "changed" else "")
+        yield _difference(part, title, fate, _what(old, new) if fate == "changed" else "", ident)
 
 
 def _title(value: Any, ident: str) -> str:

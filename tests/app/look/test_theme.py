@@ -12,6 +12,8 @@ from PySide6.QtWidgets import QApplication, QCheckBox
 from app.look import theme
 from app.look.theme import (
     DARK,
+    HIGH_DARK,
+    HIGH_LIGHT,
     KIND_MARKS,
     KIND_TITLES,
     LIGHT,
@@ -56,6 +58,16 @@ def test_words_can_be_read_on_the_filled_button_and_on_cues(look):
     assert contrast(look.on_strong, look.text) >= 4.5, "under the pointer it is filled with the text's colour"
     for kind in KINDS:
         assert contrast("#17181b", look.fills[kind]) >= 4.5, "names on cues of the timeline"
+
+
+@pytest.mark.parametrize("look", [HIGH_DARK, HIGH_LIGHT], ids=["dark", "light"])
+@pytest.mark.parametrize("ground", GROUNDS)
+def test_in_high_contrast_words_have_seven_to_one_and_borders_three(look, ground):
+    """WCAG 2.1, 1.4.6 and 1.4.11."""
+    below = getattr(look, ground)
+    for color in (look.text, look.dim, look.warning, look.error, *look.kinds.values()):
+        assert contrast(color, below) >= 7, (color, below)
+    assert contrast(look.line, below) >= 3
 
 
 def test_colour_is_never_alone():

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import Any
 
 import pytest
 
 from app.project.change_words import describe_edit
 from metagraph.graph import edits
-from metagraph.graph.model import Project
+from metagraph.graph.model import Project, Settings
 
 
 @pytest.fixture
@@ -75,3 +76,17 @@ def test_a_name_of_a_hundred_letters_is_cut(project: Project, toy: Any) -> None:
     before = edits.update_actions(project, (beat,), name="n" * 100)
     words = describe_edit("x", before, edits.update_actions(before, (beat,), likelihood=2.0))
     assert len(words) < 70 and words.endswith("…")
+
+
+@pytest.mark.parametrize("field", [f.name for f in fields(Settings)])
+def test_each_setting_of_the_planner_can_be_changed_and_is_told(project: Project, field: str) -> None:
+    was = getattr(project.settings, field)
+    now = not was if isinstance(was, bool) else was + 1
+    words = describe_edit("Change a setting", project, edits.set_settings(project, **{field: now}))
+    assert words == "Change a setting" if field == "shortest" else "→" in words
+
+
+def test_a_setting_that_is_on_or_off_says_yes_or_no(project: Project) -> None:
+    after = edits.set_settings(project, never_twice=False)
+    assert describe_edit("x", project, after) == "Never twice in a row yes → no"
+    assert describe_edit("x", project, edits.set_settings(project, wait=6.0)) == "Maximum wait 4.00 → 6.00 s"

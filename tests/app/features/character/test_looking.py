@@ -128,3 +128,25 @@ def test_the_picture_is_on_the_clipboard(toys):
     toys.do("copy_picture")
     picture = QGuiApplication.clipboard().image()
     assert not picture.isNull() and picture.width() >= toys.preview.view.width()
+
+
+def test_a_live_trail_keeps_the_past_and_asks_for_one_pose_a_picture(toy):
+    from app.features.character.trails import RATE, TrailSamples
+    from app.stage.playback_source import ShownPlayback
+    from metagraph.playback.planner import make_plan
+
+    project, asked = toy.project(), []
+
+    def over(seconds: float) -> None:
+        asked.append(seconds)
+
+    samples = TrailSamples()
+    for n in range(20):  # each moment of a live session is another playback
+        shown = ShownPlayback(project, make_plan(project, 10.0), 10.0, over=over)
+        times, places, known = samples.places(shown, 1.0 + n / RATE)
+    assert (
+        len(asked) == 20 and len(times) == len(places) == 20 and times[-1] == pytest.approx(1.0 + 19 / RATE)
+    )
+    assert known
+    times, _, _ = samples.places(shown, 0.5)
+    assert list(times) == pytest.approx([0.5]), "it began anew"

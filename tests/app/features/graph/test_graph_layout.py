@@ -222,3 +222,16 @@ def test_the_pointer_on_a_node_says_what_its_kind_means(toy):
     }
     assert "accompanies speech" in said["gesture"] and "without meaning" in said["fidget"]
     assert "ends in another" in said["transition"]
+
+
+def test_names_of_stances_are_not_cut_where_that_saves_no_line(toy):
+    project = toy.project()
+    for name in ("arms crossed in front of the body", "hands clasped behind the body"):
+        project = edits.add_stance(project, "arms", name)
+    low = QSizeF(800, 300)
+    chips = [c for c in lay_out_canvas(project, "arms", None, low).chips if c.stance]
+    assert len({c.rect.top() for c in chips}) == 1
+    wide = {c.name: c.rect.width() for c in chips}
+    assert wide["hands clasped behind the body"] > wide["up"], "each as wide as its name"
+    narrow = [c for c in lay_out_canvas(project, "arms", None, QSizeF(600, 300)).chips if c.stance]
+    assert len({round(c.rect.width()) for c in narrow}) == 1, "as many in a line as can be told apart"

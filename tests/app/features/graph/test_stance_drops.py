@@ -63,7 +63,7 @@ def test_a_stance_dragged_between_two_is_listed_there_in_one_step(toys):
     drive.drag(drive.chip(far), left, lambda: stances() == [far, rest, up])
     assert drive.document.undo_stack.count() == steps + 1
     assert drive.canvas.mark is None and drive.canvas.arrow is None and drive.canvas.drop is None
-    drive.do("stance_later")  # of far, which the press has shown
+    drive.do("list_stance_later")  # of far, which the press has shown
     assert stances() == [rest, far, up]
     drive.document.undo()
     drive.document.undo()
