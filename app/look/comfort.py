@@ -43,7 +43,7 @@ def read_comfort() -> Comfort:
     """
     settings = QSettings()
     wanted = settings.value(KEYS["contrast"])
-    contrast = wants_contrast() if wanted is None else str(wanted) == "true"
+    contrast = is_contrast_preferred() if wanted is None else str(wanted) == "true"
     still = str(settings.value(KEYS["still"], "")) == "true"
     _Kept.now = Comfort(contrast, still, _read_size(settings))
     return _Kept.now
@@ -57,7 +57,7 @@ def set_comfort(**changes: Any) -> None:
         QSettings().setValue(KEYS[name], text)
 
 
-def wants_contrast() -> bool:
+def is_contrast_preferred() -> bool:
     """Return whether the system asks for high contrast; Qt knows from 6.10 on."""
     hints = QGuiApplication.styleHints()
     found = getattr(hints, "accessibility", None)

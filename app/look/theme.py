@@ -103,7 +103,7 @@ HIGH_DARK = replace(
     strong="#ffffff",
     on_strong="#000000",
     warning="#ffdb3a",
-    error="#ffa198",
+    error="#ffb3ab",
     kinds={"stance": "#62e3d2", "gesture": "#ffc062", "fidget": "#cdbbff", "transition": "#93c9ff"},
     high=True,
 )
