@@ -52,7 +52,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Exchange:
     """What the person says and the character answers, in clauses as `Turn` has them. cut: seconds of the
-    answer after which the person says the next; None where it is heard whole.
+    answer after which the person says the next; None if it is heard whole.
     """
 
     says: tuple[str, ...]
