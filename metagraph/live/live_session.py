@@ -678,7 +678,8 @@ class LiveSession:
         since = None if is_paused(began) else round_seconds(began)
         if is_paused(before.start):
             at = reply.at
-        if at is not None and speech.length is not None and at >= speech.end:  # something else cut it short
+        cut = speech.length is not None and before.end > self.now  # something else cuts short what runs
+        if cut and at is not None and at >= speech.end:
             return Reply(id=reply.id, state="refused", why=UNSAID, notes=notes)
         return msgspec.structs.replace(reply, at=at, since=since, notes=notes)
 
