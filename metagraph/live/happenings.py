@@ -99,7 +99,9 @@ class Happenings:
         """Report that something ends which was promised and never began; what begins before `fixed` seconds
         cannot be stopped, and ends a moment later.
         """
-        if not ask.settled or ask.ended or key in self.running or ask.lane not in TOLD:
+        taken = reason in ("withdrawn", "interrupted")  # which is known before it is planned
+        runs = self._runs(key, ask, plan) if taken else key in self.running
+        if not ask.settled or ask.ended or runs or ask.lane not in TOLD:
             return
         ask.ended = True
         layer = next((x for x in LAYERS if x == ask.lane), None)
@@ -108,6 +110,13 @@ class Happenings:
             self._leaving[key] = Leaving(ask.client, ask.ident, fixed, event)
         else:
             self._tell(ask.client, ask.ident, event)
+
+    def _runs(self, key: str, ask: OpenAsk, plan: Plan) -> bool:
+        """Whether an ask runs, and not only what was said under its id before it."""
+        one = self.running.get(key)
+        if one is None or one.layer is not None or not one.start < ask.at or ask.at <= self._followed:
+            return one is not None
+        return any(abs(piece.start - ask.at) < 1e-6 for piece in _list_pieces(plan, one, True))
 
     def list_happenings(
         self, plan: Plan, ledger: Ledger, before: float, now: float, clients: Collection[Listener]
@@ -167,7 +176,8 @@ class Happenings:
         now: float,
     ) -> None:
         before = self.running.get(request)
-        if before is not None and not _lasts(plan, before, now):
+        goes_on = before is not None and any(s.start == start for s in _list_pieces(plan, before))
+        if before is not None and not goes_on and not _lasts(plan, before, now):
             self._end(request, plan, ledger, now)
             before = None
         owner = ledger.owner(request)
@@ -244,19 +254,28 @@ def _said_again(plan: Plan, speech: Speech) -> bool:
     return any(s.id == speech.id and s.start == speech.end for s in plan.track.speeches)
 
 
+def _list_pieces(plan: Plan, one: Running, whole: bool = False) -> list[Speech]:
+    """Return the pieces of an utterance that runs, in the order of their starts; none of an action. whole:
+    also those after it was said why it ends.
+    """
+    if one.layer is not None:
+        return []
+    latest = float("inf") if one.reason is None or whole else one.start
+    every = [s for s in plan.track.speeches if s.id == one.request and one.start <= s.start <= latest]
+    out = every[:1]
+    for piece in every[1:]:
+        if not is_same_utterance(out[-1], piece):
+            break
+        out.append(piece)
+    return out
+
+
 def _lasts(plan: Plan, one: Running, now: float) -> bool:
     """Whether something of a request still plays, or comes."""
     latest = float("inf") if one.reason is None else one.start
     if one.layer is None:
-        pieces = [s for s in plan.track.speeches if s.id == one.request and one.start <= s.start <= latest]
-        if not pieces:
-            return False
-        last = pieces[0]
-        for piece in pieces[1:]:
-            if not is_same_utterance(last, piece):
-                break
-            last = piece
-        return last.end > now or (last.more and one.reason is None)
+        pieces = _list_pieces(plan, one)
+        return bool(pieces) and (pieces[-1].end > now or (pieces[-1].more and one.reason is None))
     lane = plan.layers[one.layer]
     for cue in reversed(lane.cues):
         if cue.end <= now:

@@ -545,6 +545,8 @@ class LiveSession:
         """Plan a tick's requests, answer them, and report others that changed because of them."""
         now, ledger = self.now, self.ledger
         self.running.reach(now, self._edited)
+        # What is taken back is not held until it is resumed.
+        work.steered = [x for x in work.steered if x.what not in work.gone or x.what in work.asks]
         if work.asks or work.gone or work.steered:
             asks = [*work.gone.values(), *work.asks.values(), *work.steered]
             self.tape.keep(asks, now)
@@ -617,8 +619,10 @@ class LiveSession:
         if is_paused(speech.start) and not is_paused(before.start):  # it is paused at the same tick
             speeches = self.plan.track.speeches
             pieces = [s for s in speeches if s.id == open_.key and s.start >= before.start]
+            first, *others = pieces
+            if first.length is None and not is_paused(first.start) and others:
+                return False  # it was said whole before
             same = all(is_same_utterance(one, other) for one, other in pairwise(pieces))
-            first = pieces[0]
             return same and (first.start == before.start or first.text == before.text)
         told = speech.timing is not None and before.timing is not None
         return (told and speech.start == before.start) or (not told and speech.start == before.end)
@@ -674,7 +678,8 @@ class LiveSession:
         since = None if is_paused(began) else round_seconds(began)
         if is_paused(before.start):
             at = reply.at
-        if at is not None and speech.length is not None and at >= speech.end:  # something else cut it short
+        cut = speech.length is not None and before.end > self.now  # something else cuts short what runs
+        if cut and at is not None and at >= speech.end:
             return Reply(id=reply.id, state="refused", why=UNSAID, notes=notes)
         return msgspec.structs.replace(reply, at=at, since=since, notes=notes)
 

@@ -54,7 +54,7 @@ class Steering:
         self._forgotten = find_forgotten(plan.track, now)
         return set(find_utterances(plan.track, "", now))
 
-    def close_forgotten(self, now: float) -> list[a.AnyRequest]:
+    def close_forgotten(self, now: float) -> list[SteeringRequest]:
         """Return requests that finish those of which nothing came for long."""
         keys, self._forgotten = self._forgotten, []
         return [a.Finish(id=f"{key}.0", what=key, told=now) for key in keys]

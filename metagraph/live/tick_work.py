@@ -87,7 +87,7 @@ class TickWork:
     gone: dict[str, a.AnyRequest] = field(default_factory=dict)
     open: dict[str, Open] = field(default_factory=dict)
     over: list[Open] = field(default_factory=list)
-    steered: list[a.AnyRequest] = field(default_factory=list)
+    steered: list[a.Interrupt | a.Pause | a.Resume | a.Finish] = field(default_factory=list)
     turned: set[str] = field(default_factory=set)
     paused: set[str] = field(default_factory=set)
 

@@ -325,3 +325,18 @@ def test_tokens_behind_a_text_that_was_said_whole_follow_it(talk: Talk) -> None:
         " So take a coat.",
     ]
     assert talk.ends("a") == ["finished"]
+
+
+@pytest.mark.parametrize("order", [("pause", "withdraw"), ("withdraw", "pause")])
+def test_what_is_taken_back_and_paused_at_once_is_not_said_when_others_resume(
+    talk: Talk, order: tuple[str, str]
+) -> None:
+    talk.ask(do="say", id="a", text="It rains all day.")
+    talk.wait(0.2)
+    for do in order:
+        talk.session.receive(1, json.dumps({"do": do, "what": "a"}))
+    talk.wait(0.5)
+    assert talk.ends("a") == ["withdrawn"]
+    talk.ask(do="resume")
+    talk.wait(0.5)
+    assert [e["event"] for e in talk.heard] == ["started", "ended"]

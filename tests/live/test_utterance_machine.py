@@ -111,13 +111,13 @@ class Utterances(RuleBasedStateMachine):
             out = self.session.tick(self.session.now + step)
             assert len(out.replies) == len(asked), "each request has one reply"
             said: set[tuple[str, str]] = set()
-            begun: set[tuple[str, str]] = set()  # what does not go on with an earlier one
+            begun: set[tuple[str, str]] = set()  # what does not go on with one that is owed an end
             for (agent, request), reply in zip(asked, out.replies, strict=True):
                 told = msgspec.json.decode(reply) if isinstance(reply, bytes) else msgspec.to_builtins(reply)
                 assert told.get("state") and (told["state"] != "refused" or told.get("why")), told
                 if request["do"] == "say" and told["state"] in ("planned", "late"):
                     said.add((agent, request["id"]))
-                    if told.get("since") is None:
+                    if told.get("since") is None or not self.models[agent, request["id"]].owed:
                         begun.add((agent, request["id"]))
             owners = {number: agent for agent, number in self.clients.items()}
             events = [(owners.get(client), msgspec.to_builtins(event)) for client, event in out.events]
