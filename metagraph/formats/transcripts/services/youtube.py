@@ -12,10 +12,11 @@ _LAST = 0.07  # seconds a letter of the last word, where nothing says when it en
 
 
 def is_youtube(source: TranscriptSource) -> bool:
-    return "events" in source.keys and (
-        "wireMagic" in source.keys
-        or any(isinstance(e, dict) and "tStartMs" in e for e in list(source.data["events"] or [])[:50])
-    )
+    if "events" not in source.keys:
+        return False
+    events = source.data["events"]
+    first = events[:50] if isinstance(events, list) else []
+    return "wireMagic" in source.keys or any(isinstance(e, dict) and "tStartMs" in e for e in first)
 
 
 def read_youtube(source: TranscriptSource) -> Transcript:
