@@ -38,7 +38,7 @@ def make_comfort_command(shell: Shell) -> Command:
             action.setCheckable(True)
             action.setChecked(on)
             action.setToolTip(tip)
-            action.triggered.connect(partial(toggle, name=name))
+            action.toggled.connect(lambda on, name=name: toggle(on, name))
         menu.setToolTipsVisible(True)
         menu.addSeparator()
         group = QActionGroup(menu)

@@ -17,7 +17,7 @@ from app.translation import tr_error, tr_phrase
 from metagraph.common.network_paths import is_closed
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
-from metagraph.graph.prop import make_turn
+from metagraph.graph.prop import Prop, make_turn
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import CharacterMesh
 from preview.figure import SkinnedFigure
@@ -114,6 +114,39 @@ def read_prop_meshes(project: Project, folder: Path) -> tuple[PropMeshes, list[s
         except FileError as error:
             problems.append(str(error))
     return out, problems
+
+
+def find_height_below(project: Project, meshes: PropMeshes, ident: str, x: float, z: float) -> float:
+    """Return how high the place of the floor is that a prop would lie on there, metres: on a larger prop that
+    stands there, or 0 for the floor itself.
+    """
+    own = _measure_footprint(project.props[ident], meshes)
+    high = 0.0
+    for prop in project.props.values():
+        mesh = meshes.meshes.get(meshes.folder / prop.path)
+        if mesh is None or prop.joint or _measure_footprint(prop, meshes) <= own:
+            continue
+        turn = np.array(make_turn(prop))
+        points = rotation.rotate_vectors(turn, mesh.positions * prop.scale) + np.asarray(prop.at, float)
+        a, b, c = (points[mesh.triangles[:, n]] for n in range(3))
+        area = (b[:, 0] - a[:, 0]) * (c[:, 2] - a[:, 2]) - (c[:, 0] - a[:, 0]) * (b[:, 2] - a[:, 2])
+        flat = np.abs(area) > 1e-12
+        a, b, c, area = a[flat], b[flat], c[flat], area[flat]
+        v = ((x - a[:, 0]) * (c[:, 2] - a[:, 2]) - (c[:, 0] - a[:, 0]) * (z - a[:, 2])) / area
+        w = ((b[:, 0] - a[:, 0]) * (z - a[:, 2]) - (x - a[:, 0]) * (b[:, 2] - a[:, 2])) / area
+        inside = (v >= 0) & (w >= 0) & (v + w <= 1)
+        heights = (a[:, 1] + v * (b[:, 1] - a[:, 1]) + w * (c[:, 1] - a[:, 1]))[inside]
+        high = max(high, float(np.max(heights, initial=0.0)))
+    return high
+
+
+def _measure_footprint(prop: Prop, meshes: PropMeshes) -> float:
+    """Return the area of the box round a prop from above, square metres; 0 if its file is not read yet."""
+    mesh = meshes.meshes.get(meshes.folder / prop.path)
+    if mesh is None:
+        return 0.0
+    wide, _, deep = np.ptp(mesh.positions, axis=0) * prop.scale
+    return float(wide * deep)
 
 
 def make_prop_actors(

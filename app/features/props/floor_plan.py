@@ -14,7 +14,7 @@ from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent,
 from PySide6.QtWidgets import QWidget
 
 from app.look.theme import get_theme
-from app.stage.props import PropMeshes
+from app.stage.props import PropMeshes, find_height_below
 from app.stage.session import StageSession
 from app.translation import tr
 from app.widgets.gesture import PointerHand, PressDrag, Reason
@@ -24,6 +24,7 @@ LEAST = 1.5  # metres from the character that are always in sight
 ROOM = 1.15  # of the farthest prop, what is in sight then
 GRID, STEP = 0.05, 15.0  # metres and degrees that a drag snaps to
 HANDLE = 5.0  # pixels: the radius of what a prop is turned by
+LYING = 0.02  # metres between a prop and what it lies on
 UNKNOWN = 0.15  # metres: half of a prop whose file is not read yet
 NUDGES = {
     Qt.Key.Key_Left: (-GRID, 0.0),
@@ -57,7 +58,7 @@ class FloorPlan(QWidget):
         self.hand = PointerHand()
         self._span = LEAST  # metres in sight, kept while a drag lasts
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setMinimumSize(160, 150)
+        self.setMinimumSize(160, 110)
         self.setAccessibleName(tr("Floor from above"))
         words = tr("Drag a prop to move it, its dot to turn it. Alt: no snapping. Arrow keys move it by 5 cm")
         self.setToolTip(words)
@@ -118,6 +119,17 @@ class FloorPlan(QWidget):
             ):
                 found.append((box.width() * box.height(), ident))
         return min(found, default=(0.0, ""))[1]
+
+    def put_down(self, ident: str, prop: Prop, to: tuple[float, float]) -> Prop:
+        """Return a prop at another place of the floor, x and z in metres. What lay on the floor or on a
+        larger prop lies on what is below it there; what was lifted off stays as high.
+        """
+        project = self.session.document.project
+        before, after = (
+            find_height_below(project, self.meshes, ident, x, z) for x, z in ((prop.at[0], prop.at[2]), to)
+        )
+        high = after if abs(prop.at[1] - before) < LYING else prop.at[1]
+        return msgspec.structs.replace(prop, at=(round(to[0], 4), round(high, 4), round(to[1], 4)))
 
     def set_current(self, ident: str) -> None:
         """Show which prop is chosen."""
@@ -198,8 +210,8 @@ class FloorPlan(QWidget):
         if nudge is None or now is None:
             super().keyPressEvent(event)
             return
-        at = (round(now.at[0] + nudge[0], 4), now.at[1], round(now.at[2] + nudge[1], 4))
-        self.change(self.current, msgspec.structs.replace(now, at=at), not event.isAutoRepeat())
+        to = (now.at[0] + nudge[0], now.at[2] + nudge[1])
+        self.change(self.current, self.put_down(self.current, now, to), not event.isAutoRepeat())
 
 
 class _PropDrag(PressDrag):
@@ -234,7 +246,7 @@ class MoveDrag(_PropDrag):
         to = (self.before.at[0] + x - x0, self.before.at[2] + z - z0)
         if not free:
             to = (round(to[0] / GRID) * GRID, round(to[1] / GRID) * GRID)
-        return msgspec.structs.replace(self.before, at=(round(to[0], 4), self.before.at[1], round(to[1], 4)))
+        return self.plan.put_down(self.ident, self.before, to)
 
 
 class TurnDrag(_PropDrag):

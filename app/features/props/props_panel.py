@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import msgspec
+import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
@@ -34,7 +35,7 @@ from metagraph.errors import FileError
 from metagraph.formats.props.reader import ENDINGS
 from metagraph.formats.store import make_path_for_project
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.editing.props import add_prop, find_palm, remove_prop, set_prop
+from metagraph.graph.editing.props import add_prop, find_grip, remove_prop, set_prop
 from metagraph.graph.model import Project
 from metagraph.graph.prop import LARGEST, Prop
 from metagraph.motion.roles import find_roles
@@ -48,6 +49,7 @@ FIELDS = (
     ("turn", 1, tr_noop("Turn"), "°", 5.0, 1),
     ("turn", 2, tr_noop("Roll"), "°", 5.0, 1),
 )
+BESIDE, GAP = 0.5, 0.1  # metres: from the character to the first prop that is added, and between props
 WIDE = 560  # pixels from which the parts are side by side
 HANDS = ("right_hand", "left_hand", "head")  # roles of joints that are offered before the other joints
 
@@ -101,15 +103,16 @@ class PropsPanel(QWidget):
         self.joint.activated.connect(lambda _: self._set_joint())
         grid.addWidget(QLabel(tr("Carried by"), self.fields), 0, 0)
         grid.addWidget(self.joint, 0, 1, 1, 3)
+        self.joint.setMaxVisibleItems(14)
         self.numbers: dict[tuple[str, int], DoubleSpinBox] = {}
         for n, (name, place, words, unit, step, decimals) in enumerate(FIELDS):
-            row, column = 1 + n % 3, 2 * (n // 3)
+            row, column = 1 + n // 3, 2 * (n % 3)
             self._add_number(grid, row, column, (name, place), tr(words), unit, step, decimals)
-        self._add_number(grid, 4, 0, ("scale", 0), tr("Size"), " ×", 0.1, 3)
+        self._add_number(grid, 0, 4, ("scale", 0), tr("Size"), " ×", 0.1, 3)
         self.numbers["scale", 0].setRange(0.001, LARGEST)
-        grid.setColumnStretch(1, 1)
-        grid.setColumnStretch(3, 1)
-        grid.setRowStretch(5, 1)
+        for column in (1, 3, 5):
+            grid.setColumnStretch(column, 1)
+        grid.setRowStretch(3, 1)
         left = QVBoxLayout()
         left.setSpacing(8)
         left.addLayout(buttons)
@@ -250,8 +253,10 @@ class PropsPanel(QWidget):
         prop, joint = self.prop, str(self.joint.currentData() or "")
         if prop is None or joint == prop.joint:
             return
-        at = find_palm(self.document.project, joint) if joint else (0.0, 0.0, 0.5)
-        changed = msgspec.structs.replace(prop, joint=joint, at=at, turn=(0.0, 0.0, 0.0))
+        at, turn = (0.0, 0.0, 0.5), (0.0, 0.0, 0.0)
+        if joint:
+            at, turn = find_grip(self.document.project, joint)
+        changed = msgspec.structs.replace(prop, joint=joint, at=at, turn=turn)
         words = tr("Carry {name}", name=prop.name) if joint else tr("Put {name} down", name=prop.name)
         self._edit(words, self.current, changed)
 
@@ -275,42 +280,52 @@ class PropsPanel(QWidget):
         """Read files on a thread, and add those that can be drawn as one step; say why others cannot."""
         from metagraph.formats.props.reader import read_prop
 
-        def read(_: object) -> tuple[list[Path], list[FileError]]:
+        def read(_: object) -> tuple[list[tuple[Path, float]], list[FileError]]:
             good, bad = [], []
             for path in paths:
                 try:
-                    read_prop(path)
+                    mesh = read_prop(path)
                 except FileError as error:
                     bad.append(error)
                 else:
-                    good.append(path)
+                    good.append((path, float(-mesh.positions[:, 0].min())))
+                    widths[path] = float(np.ptp(mesh.positions[:, 0]))
             return good, bad
 
-        def place(result: tuple[list[Path], list[FileError]]) -> None:
+        widths: dict[Path, float] = {}
+
+        def place(result: tuple[list[tuple[Path, float]], list[FileError]]) -> None:
             good, bad = result
             if good:
-                self._place(good)
+                self._place(good, widths)
             for error in bad:
                 self.document.failed.emit(tr_error(error))
 
         self.jobs.start("props", read, place, lambda error: self.document.failed.emit(tr_error(error)))
 
-    def _place(self, paths: Sequence[Path]) -> None:
-        """Add props in a row to the character's left, each where none stands."""
+    def _place(self, paths: Sequence[tuple[Path, float]], widths: Mapping[Path, float]) -> None:
+        """Add props in a row beside the character, to the viewer's right, none in another. paths: of each
+        prop, with how far its origin is from its left side; widths in metres.
+        """
         added: list[str] = []
+        right = BESIDE
+        for prop in self.document.project.props.values():
+            outline = self.plan.find_outline(prop).corners.boundingRect()
+            if not prop.joint and abs(prop.at[2]) < BESIDE:
+                right = max(right, self.plan.to_floor(outline.topRight())[0] + GAP)
 
         def edit(project: Project) -> Project:
-            for path in paths:
-                at = (0.8, 0.0, 0.0)
-                while any(other.at == at for other in project.props.values()):
-                    at = (round(at[0] + 0.4, 3), 0.0, 0.0)
-                prop = Prop(name=path.stem, path=make_path_for_project(path, self.document.folder), at=at)
+            at = right
+            for path, left in paths:
+                place = (round(at + left, 3), 0.0, 0.0)
+                prop = Prop(name=path.stem, path=make_path_for_project(path, self.document.folder), at=place)
                 project, ident = add_prop(project, prop)
                 added.append(ident)
+                at += widths[path] + GAP
             return project
 
         words = (
-            tr("Add {name}", name=paths[0].stem)
+            tr("Add {name}", name=paths[0][0].stem)
             if len(paths) == 1
             else tr("Add {count} props", count=len(paths))
         )

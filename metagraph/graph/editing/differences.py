@@ -85,6 +85,11 @@ def list_differences(before: Project, after: Project) -> list[Difference]:
     for layer in LAYERS:
         old, new = before.graphs[layer], after.graphs[layer]
         out += _keyed("stances", phrase("Stance"), old.stances, new.stances, layer)
+        both = [i for i in old.stances if i in new.stances]
+        if both != (order := [i for i in new.stances if i in old.stances]):
+            listed = ", ".join(" ".join(new.stances[i].name.split()) for i in order)
+            words = phrase("Order of the stances of {layer}: {names}", layer=_plain(layer), names=listed)
+            out.append(Difference("changed", words, "start"))
         out += _keyed("actions", "", old.actions, new.actions, layer)
         if old.start != new.start:
             names = [
@@ -201,4 +206,6 @@ def _shown(value: Any) -> str:
         return "yes" if value else "no"
     if isinstance(value, int | float):
         return f"{value:g}"
+    if isinstance(value, tuple) and len(value) == 3 and all(isinstance(x, int | float) for x in value):
+        return f"({', '.join(f'{x:g}' for x in value)})"
     return f"'{value}'" if isinstance(value, str) and len(value) <= 40 else ""

@@ -13,14 +13,19 @@ from metagraph.formats.store import (
     list_project_files,
     make_paths_absolute,
     move_project,
+    open_project,
     read_project,
     save_project,
 )
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.differences import describe_differences
-from metagraph.graph.editing.props import MOST, add_prop, find_palm, remove_prop, set_prop
-from metagraph.graph.prop import Prop
+from metagraph.graph.editing.props import MOST, add_prop, find_grip, remove_prop, set_prop
+from metagraph.graph.prop import Prop, make_turn
+from metagraph.motion import rotation
+from metagraph.motion.joint_map import find_known_roles
 from tests.conftest import Toy
+
+SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "sample.metagraph.yaml"
 
 CUP = Prop(name="cup", path="props/cup.glb", at=(0.25, 0.75, 0.5), turn=(0, 30, 0), scale=1.5)
 
@@ -51,15 +56,40 @@ def test_what_cannot_be_done_is_refused_in_words() -> None:
         add_prop(project, CUP)
 
 
-def test_the_palm_is_the_middle_of_what_is_below_a_joint() -> None:
+def test_what_a_joint_without_fingers_carries_is_in_the_middle_of_what_is_below_it() -> None:
     project = Toy().project()
     skeleton = project.skeleton
     assert skeleton is not None
     parent = next(n for n in range(len(skeleton)) if skeleton.children[n])
     middle = np.mean([skeleton.rest_translations[c] for c in skeleton.children[parent]], axis=0)
-    np.testing.assert_allclose(find_palm(project, skeleton.names[parent]), middle, atol=1e-4)
+    np.testing.assert_allclose(find_grip(project, skeleton.names[parent])[0], middle, atol=1e-4)
     leaf = next(n for n in range(len(skeleton)) if not skeleton.children[n])
-    assert find_palm(project, skeleton.names[leaf]) == (0, 0, 0) == find_palm(project, "nobody")
+    assert find_grip(project, skeleton.names[leaf]) == ((0, 0, 0), (0, 0, 0)) == find_grip(project, "nobody")
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+def test_a_hand_holds_a_prop_in_its_palm_upright_towards_its_thumb(side: str) -> None:
+    """Of Ada, whose palms face down or to the body at rest."""
+    project = open_project(SAMPLE).project
+    skeleton = project.skeleton
+    assert skeleton is not None
+    joint = skeleton.names.index(f"{side.title()}Hand")
+    at, turn = find_grip(project, skeleton.names[joint])
+    turns, places = skeleton.globals(skeleton.rest)
+    where = places[joint] + rotation.rotate_vectors(turns[joint], np.array(at))
+    held = rotation.multiply(turns[joint], np.array(make_turn(Prop(name="", path="", turn=turn))))
+    up = rotation.rotate_vectors(held, np.array([0.0, 1, 0]))
+    roles = find_known_roles(skeleton, None)
+    knuckles = [places[roles[f"{side}_{finger}_1"]] for finger in ("index", "little")]
+    across = (knuckles[0] - knuckles[1]) / np.linalg.norm(knuckles[0] - knuckles[1])
+    assert float(up @ across) > 0.99
+    out = where - places[joint]
+    out -= across * float(out @ across)
+    along = (knuckles[0] + knuckles[1]) / 2 - places[joint]
+    palm = np.cross(across, along) * (1 if side == "right" else -1)
+    assert float(out @ palm) > 0 and palm[1] < 0, "the palm's side, which is below in a T-pose"
+    tip = places[roles[f"{side}_middle_3"]]
+    assert np.linalg.norm(where - tip) < 0.14
 
 
 def test_props_are_saved_moved_and_read(tmp_path: Path) -> None:

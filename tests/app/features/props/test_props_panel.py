@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -156,6 +157,31 @@ def test_a_joint_carries_it_from_its_palm_and_it_is_put_down_again(toys, panel, 
     panel.joint.setCurrentIndex(0)
     panel.joint.activated.emit(0)
     assert only(panel).joint == "" and only(panel).at[1] == 0
+
+
+def test_a_cup_that_is_dragged_onto_a_desk_lies_on_it_and_off_it_on_the_floor(toys, panel, box, tmp_path):
+    put(toys, panel, box)  # 0.6 m high, its origin in its middle
+    cup = tmp_path / "cup.stl"
+    cup.write_bytes(trimesh.creation.box((0.1, 0.1, 0.1)).export(file_type="stl"))
+    panel.add([cup])
+    toys.wait(lambda: len(panel.document.project.props) == 2)
+    toys.wait(lambda: len(panel.figures.props.meshes.meshes) == 2)
+    desk, small = panel.document.project.props
+    plan = panel.plan
+    at, there = (panel.document.project.props[ident].at for ident in (small, desk))
+    drag(plan, plan.to_pixels(at[0], at[2]), plan.to_pixels(there[0], there[2]))
+    assert panel.document.project.props[small].at[1] == pytest.approx(0.3, abs=0.001)
+    drag(plan, plan.to_pixels(there[0], there[2]), plan.to_pixels(-0.8, 0.5))
+    assert panel.document.project.props[small].at[1] == 0
+    drag(plan, plan.to_pixels(there[0], there[2]), plan.to_pixels(-0.8, 0.5))
+    assert panel.document.project.props[desk].at[1] == 0, "what is larger does not climb onto what is smaller"
+
+
+def test_props_that_are_added_together_stand_beside_the_character_and_each_other(toys, panel, box):
+    panel.add([box, box, box])
+    toys.wait(lambda: len(panel.document.project.props) == 3)
+    places = [prop.at[0] for prop in panel.document.project.props.values()]
+    assert places[0] - 0.3 >= 0.5 and all(b - a >= 0.69 for a, b in pairwise(places))
 
 
 def test_remove_takes_the_chosen_prop_away(toys, panel, box):
