@@ -236,7 +236,7 @@ def test_tab_goes_round_and_gets_stuck_nowhere(toys):
     drive.session.jump(action=drive.id("rest beat lf"))
     drive.library.search.setFocus()
     seen = []
-    for _ in range(80):
+    for _ in range(160):  # stops, when all panels are shown, are some 80
         drive.key(KEY.Key_Tab, widget=QApplication.focusWidget())
         seen.append(QApplication.focusWidget())
         if seen[-1] is drive.library.search:
