@@ -228,7 +228,7 @@ def test_the_seat_is_chosen_and_kept_and_drawn(drive):
     drive.files.open(SEATED, template=True)
     drive.wait(lambda: drive.preview.drawn is not None)
     kinds = lambda: [type(a.figure) for a in drive.preview.scene().actors]  # noqa: E731
-    assert Stool in kinds()
+    drive.wait(lambda: Stool in kinds())
     menu = drive.shell.actions["seat"].menu()
     menu.aboutToShow.emit()
     next(a for a in menu.actions() if a.text() == "Chair").trigger()
