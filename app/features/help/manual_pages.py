@@ -20,6 +20,7 @@ _ABOUT = {  # panels by page
     "animators/life.md": "character life lines",
     "animators/manual-machine.md": "manual inspector",
     "animators/perform.md": "timeline",
+    "animators/props.md": "props",
     "animators/safety.md": "history",
     "animators/table.md": "table",
     "animators/talk.md": "conversation",
