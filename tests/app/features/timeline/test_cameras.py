@@ -144,7 +144,7 @@ def test_what_is_written_is_cut_and_captioned_like_the_preview(talking, monkeypa
     seen = [(talking.figures.of(one), one) for one in talking.performance.shown.everyone]
     cameras = []
 
-    def pictures(seen, times, size, look, camera, into, seat):
+    def pictures(seen, times, size, look, camera, into, seat, props):
         for at in times:
             cameras.append(camera(float(at)).camera)
             yield np.full((size[1], size[0], 4), 255, np.uint8)
