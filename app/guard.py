@@ -18,16 +18,22 @@ from typing import Any
 # What Qt is given by methods that failed; those that answer nothing are in SILENT.
 ANSWERS: dict[str, Callable[[], Any]] = {
     **dict.fromkeys(("event", "eventFilter", "viewportEvent", "editorEvent", "setData", "mergeWith"), bool),
-    **dict.fromkeys(("hasHeightForWidth", "focusNextPrevChild", "dropMimeData"), bool),
+    **dict.fromkeys(("hasHeightForWidth", "focusNextPrevChild", "dropMimeData", "isValid"), bool),
     "filterAcceptsRow": lambda: True,  # better one too many than none
     "lessThan": bool,
-    **dict.fromkeys(("rowCount", "columnCount", "count", "horizontalOffset", "verticalOffset"), int),
+    **dict.fromkeys(
+        ("rowCount", "columnCount", "count", "horizontalOffset", "verticalOffset", "childCount"), int
+    ),
     "isIndexHidden": bool,
-    "visualRect": lambda: _qt("QtCore", "QRect")(),
+    **dict.fromkeys(("visualRect", "rect"), lambda: _qt("QtCore", "QRect")()),
     "visualRegionForSelection": lambda: _qt("QtGui", "QRegion")(),
-    **dict.fromkeys(("heightForWidth", "id"), lambda: -1),
+    **dict.fromkeys(("heightForWidth", "id", "indexOfChild"), lambda: -1),
+    **dict.fromkeys(("object", "window", "child", "childAt", "focusChild"), lambda: None),
     **dict.fromkeys(("data", "headerData", "createEditor", "itemAt", "takeAt", "mimeData"), lambda: None),
     **dict.fromkeys(("sizeHint", "minimumSizeHint", "minimumSize"), lambda: _qt("QtCore", "QSize")()),
+    **dict.fromkeys(("text",), str),
+    "role": lambda: _qt("QtGui", "QAccessible").Role.NoRole,
+    "state": lambda: _qt("QtGui", "QAccessible").State(),
     "loadResource": lambda: "",  # an empty page
     **dict.fromkeys(("boundingRect",), lambda: _qt("QtCore", "QRectF")()),
     **dict.fromkeys(("index", "indexAt", "moveCursor", "parent"), lambda: _qt("QtCore", "QModelIndex")()),
@@ -38,7 +44,18 @@ ANSWERS: dict[str, Callable[[], Any]] = {
     "expandingDirections": lambda: _qt("QtCore", "Qt").Orientation(0),
 }
 SILENT = frozenset(
-    ("accept", "addItem", "doItemsLayout", "done", "initializeGL", "paint", "paintGL", "redo", "reject")
+    (
+        "accept",
+        "addItem",
+        "setText",
+        "doItemsLayout",
+        "done",
+        "initializeGL",
+        "paint",
+        "paintGL",
+        "redo",
+        "reject",
+    )
     + (
         "resizeGL",
         "run",

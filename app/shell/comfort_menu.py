@@ -48,4 +48,4 @@ def make_comfort_command(shell: Shell) -> Command:
             action.setChecked(size == now.size)
             group.addAction(action)
 
-    return Command("comfort", "&View", "look", tr("&Accessibility"), fill=fill)
+    return Command("comfort", "&Help", "", tr("&Accessibility"), fill=fill)

@@ -33,7 +33,7 @@ def test_the_graph_tells_its_stances_and_actions_and_which_has_the_focus(toys):
     drive.session.place.set_stance(drive.id("rest"))
     found = names(drive, drive.canvas)
     assert found[:5] == ["Stance: rest", "Stance: up", "Stance: far", "New stance", "rest, its loops"]
-    assert "Gesture: rest beat lf" in found and "Transition" in found
+    assert "Gesture: beat L" in found and "Transition" in found
     drive.canvas.setFocus()
     drive.key(Qt.Key.Key_Down, widget=drive.canvas)
     drive.pause(int(FRESH * 1000) + 30)

@@ -223,7 +223,7 @@ COMMANDS = (
     Command(
         "network",
         FILE,
-        "kept",
+        "import",
         tr_noop("Files on other &computers…"),
         FileFeature.ask_network,
         tip=tr_noop("Choose whether to open the files on other computers that this project names"),

@@ -1,4 +1,4 @@
-"""View > Accessibility, in the window."""
+"""Help > Accessibility, in the window."""
 
 from __future__ import annotations
 

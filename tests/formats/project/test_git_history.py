@@ -31,14 +31,14 @@ def path(tmp_path: Path) -> Path:
     git(folder.parent, "init", "-q")
     path = folder / f"ada{SUFFIX}"
     for name in ("first", "second"):
-        save_project(Project(name), path, versions=0)
+        save_project(Project(name), path)
         git(folder, "add", path.name)
         git(folder, "commit", "-q", "-m", f"Call it {name}")
     return path
 
 
 def test_commits_of_the_file_are_listed_and_read_the_latest_first(path: Path) -> None:
-    save_project(Project("not committed"), path, versions=0)
+    save_project(Project("not committed"), path)
     commits = list_commits(path)
     assert [(c.subject, c.author) for c in commits] == [("Call it second", "Ada"), ("Call it first", "Ada")]
     assert [read_commit(path, c).name for c in commits] == ["second", "first"]
