@@ -13,9 +13,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QPushButton, QWidget
 
 from metagraph.formats.gltf.writer import write_glb
+from metagraph.formats.store import make_paths_absolute
 from metagraph.graph import edits, requests
 from metagraph.graph.model import Project
 from tests.app.pointer import press
+from tests.processes import ROOT
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 CONTROL = Qt.KeyboardModifier.ControlModifier
@@ -58,6 +60,12 @@ class CountedHand:
     def drag(self, start: Any, end: Any, until: Any) -> None:
         self.drags += 1
         self.drive.drag(start, end, until)
+
+
+@pytest.fixture
+def sample(sample: Project) -> Project:
+    """The sample where its files are found."""
+    return make_paths_absolute(sample, ROOT / "sample_clips")
 
 
 @pytest.fixture
