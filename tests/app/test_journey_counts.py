@@ -182,6 +182,7 @@ def test_a_blend_takes_a_click_and_a_drag(hand: CountedHand) -> None:
     assert hand.taken == (1, 0, 1)
 
 
+@pytest.mark.nightly
 def test_a_certain_gesture_is_requested_by_one_drag(hand: CountedHand) -> None:
     drive = hand.drive
     drive.workspaces.choose("perform")
