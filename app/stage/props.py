@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -37,6 +38,10 @@ class PropMeshes:
     meshes: dict[Path, CharacterMesh] = field(default_factory=dict)
     _figures: dict[tuple[Path, float], SkinnedFigure] = field(default_factory=dict)
 
+    def locate(self, path: str, folder: Path | None = None) -> Path:
+        """Return the whole path of a prop's file, spelt in one way. folder: instead of its own."""
+        return Path(os.path.normpath((folder or self.folder) / path))
+
     def find_figure(self, place: Path, scale: float) -> SkinnedFigure | None:
         """Return the figure of a prop's file at a scale; None for a file that is not among them."""
         mesh = self.meshes.get(place)
@@ -67,18 +72,33 @@ class PropFigures(QObject):
         self.document, self.jobs = document, jobs
         self.meshes = PropMeshes()
         self._asked: set[Path] = set()  # read, being read, or refused
+        self._problems: dict[Path, str] = {}  # why those that were refused cannot be drawn
         document.changed.connect(self._follow)
+
+    def find_problem(self, path: str) -> str:
+        """Return why the file of a prop cannot be drawn, "" if it can, or is not read yet."""
+        return self._problems.get(self.meshes.locate(path), "")
+
+    def keep_mesh(self, path: Path, mesh: CharacterMesh) -> None:
+        """Take over the mesh of a file that was read already, and tell what was assumed of it."""
+        place = self.meshes.locate(str(path.parent.resolve() / path.name))
+        self._asked.add(place)
+        self._problems.pop(place, None)
+        self.meshes.meshes[place] = mesh
+        self.changed.emit()
+        if mesh.notes:
+            self.told.emit(f"{place.name}: {'; '.join(map(tr_phrase, mesh.notes))}")
 
     def _follow(self, before: Project, after: Project) -> None:
         if before.props is after.props:
             return
-        folder = self.meshes.folder = self.document.folder or Path()
-        used = {(folder / prop.path, prop.scale) for prop in after.props.values()}
+        self.meshes.folder = self.document.folder or Path()
+        locate = self.meshes.locate
+        used = {(locate(prop.path), prop.scale) for prop in after.props.values()}
         self.meshes.keep_used(used)
-        places = {place for place, _ in used}
-        self._asked &= places
+        self._asked &= {place for place, _ in used}
         for prop in after.props.values():
-            place = folder / prop.path
+            place = locate(prop.path)
             if place not in self._asked and not is_closed(prop.path):
                 self._asked.add(place)
                 self._read(place)
@@ -87,17 +107,16 @@ class PropFigures(QObject):
     def _read(self, place: Path) -> None:
         from metagraph.formats.props.reader import read_prop
 
-        def keep(mesh: CharacterMesh) -> None:
-            self.meshes.meshes[place] = mesh
+        def refuse(error: Exception) -> None:
+            self._problems[place] = tr_error(error)
             self.changed.emit()
-            if mesh.notes:
-                self.told.emit(f"{place.name}: {'; '.join(map(tr_phrase, mesh.notes))}")
+            self.told.emit(self._problems[place])
 
         self.jobs.start(
             f"prop {place}",
             lambda _: read_prop(place),
-            keep,
-            lambda error: self.told.emit(tr_error(error)),
+            lambda mesh: self.keep_mesh(place, mesh),
+            refuse,
             quick=True,
         )
 
@@ -110,7 +129,7 @@ def read_prop_meshes(project: Project, folder: Path) -> tuple[PropMeshes, list[s
     problems: list[str] = []
     for path in dict.fromkeys(prop.path for prop in project.props.values() if not is_closed(prop.path)):
         try:
-            out.meshes[folder / path] = read_prop(folder / path)
+            out.meshes[out.locate(path)] = read_prop(folder / path)
         except FileError as error:
             problems.append(str(error))
     return out, problems
@@ -123,7 +142,7 @@ def find_height_below(project: Project, meshes: PropMeshes, ident: str, x: float
     own = _measure_footprint(project.props[ident], meshes)
     high = 0.0
     for prop in project.props.values():
-        mesh = meshes.meshes.get(meshes.folder / prop.path)
+        mesh = meshes.meshes.get(meshes.locate(prop.path))
         if mesh is None or prop.joint or _measure_footprint(prop, meshes) <= own:
             continue
         turn = np.array(make_turn(prop))
@@ -142,7 +161,7 @@ def find_height_below(project: Project, meshes: PropMeshes, ident: str, x: float
 
 def _measure_footprint(prop: Prop, meshes: PropMeshes) -> float:
     """Return the area of the box round a prop from above, square metres; 0 if its file is not read yet."""
-    mesh = meshes.meshes.get(meshes.folder / prop.path)
+    mesh = meshes.meshes.get(meshes.locate(prop.path))
     if mesh is None:
         return 0.0
     wide, _, deep = np.ptp(mesh.positions, axis=0) * prop.scale
@@ -162,9 +181,8 @@ def make_prop_actors(
     skeleton = shown.skeleton
     if shown.clip is not None or skeleton is None:
         return
-    folder = shown.folder or meshes.folder
     for prop in shown.project.props.values():
-        figure = meshes.find_figure(folder / prop.path, prop.scale)
+        figure = meshes.find_figure(meshes.locate(prop.path, shown.folder), prop.scale)
         if figure is None or (prop.joint and prop.joint not in skeleton) or (not prop.joint and shown.side):
             continue
         turn, at = np.array(make_turn(prop)), np.asarray(prop.at, float)

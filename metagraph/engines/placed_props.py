@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from metagraph.common.network_paths import is_closed
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.gltf.placed_props import PlacedProp
 from metagraph.formats.props.reader import read_prop
@@ -22,7 +23,18 @@ def place_props(project: Project, base: Path | None) -> tuple[tuple[PlacedProp, 
     meshes: dict[str, CharacterMesh] = {}
     out, notes = [], dict[str, None]()
     for prop in project.props.values():
-        if is_closed(prop.path) or (prop.joint and prop.joint not in project.skeleton):
+        if prop.joint and prop.joint not in project.skeleton:
+            words = phrase(
+                "the prop '{name}' is left out: nothing carries it, the character has no joint '{joint}'",
+                name=prop.name,
+                joint=prop.joint,
+            )
+            notes[words] = None
+            continue
+        if is_closed(prop.path):
+            notes[
+                phrase("the prop '{name}' is left out: its file is on another computer", name=prop.name)
+            ] = None
             continue
         if prop.path not in meshes:
             try:

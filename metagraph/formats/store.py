@@ -443,7 +443,21 @@ def open_project(path: str | Path, progress: Callable[[int, int], None] | None =
     opened = load_motions(project, path.resolve().parent, progress)  # relative paths start at a link's target
     if names := list_closed_paths(opened.project):
         notes.append(describe_closed_paths(names))
+    notes += _describe_missing_props(opened.project, path.resolve().parent)
     return replace(opened, notes=(*notes, *opened.notes), digest=found, newer=newer)
+
+
+def _describe_missing_props(project: Project, folder: Path) -> list[str]:
+    """Return a note on each prop whose file is not there."""
+    return [
+        phrase(
+            "the prop '{name}' is not drawn: there is no file '{path}'. Put it back, or remove the prop",
+            name=prop.name,
+            path=prop.path,
+        )
+        for prop in project.props.values()
+        if not is_closed(prop.path) and not is_file(folder / prop.path)
+    ]
 
 
 def list_closed_paths(project: Project) -> tuple[str, ...]:

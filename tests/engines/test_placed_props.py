@@ -75,3 +75,9 @@ def test_a_file_that_was_exported_is_read_again_without_its_props(room: Project,
 def test_a_target_without_props_says_that_they_are_left_out(room: Project, tmp_path: Path) -> None:
     report = write(room, tmp_path, "bml")
     assert any(words == "3 props are left out" for words in report.losses)
+
+
+def test_a_prop_that_nothing_carries_is_left_out_with_a_word(room: Project, tmp_path: Path) -> None:
+    odd, _ = add_prop(room, Prop(name="tail ring", path="desk.glb", joint="Tail"))
+    report = write(odd, tmp_path, "metagraph")
+    assert any("'tail ring' is left out" in words and "'Tail'" in words for words in report.warnings)

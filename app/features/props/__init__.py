@@ -28,7 +28,6 @@ class PropsFeature(Feature):
         from app.features.props.props_panel import PropsPanel
 
         shell = self.shell
-        shell.stage.figures.props.told.connect(shell.tell)
         return PropsPanel(self.document, self.session, shell.stage.figures, shell.jobs, shell.widget)
 
     def ask(self) -> None:
@@ -66,6 +65,7 @@ COMMANDS = (
 
 def contribute(shell: Shell) -> Contribution:
     feature = PropsFeature(shell)
+    shell.stage.figures.props.told.connect(shell.tell)
     beside = {"label": "below", "graph": "below", "time": "below", "perform": "side", "talk": "side"}
     return Contribution(
         panels=(

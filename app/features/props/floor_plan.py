@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import atan2, cos, degrees, hypot, radians, sin
-from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -89,24 +88,28 @@ class FloorPlan(QWidget):
         scale = self._scale()
         return (at.x() - self.width() / 2) / scale, (at.y() - self.height() / 2) / scale
 
-    def find_outline(self, prop: Prop) -> Outline:
-        """Return a prop from above."""
-        mesh = self.meshes.meshes.get((self.session.document.folder or Path()) / prop.path)
+    def find_corners(self, prop: Prop) -> list[tuple[float, float]]:
+        """Return the corners of the box round a prop from above, x and z in metres; its back's are first."""
+        mesh = self.meshes.meshes.get(self.meshes.locate(prop.path))
         low, high = np.full(3, -UNKNOWN), np.full(3, UNKNOWN)
         if mesh is not None:
             low, high = mesh.positions.min(0) * prop.scale, mesh.positions.max(0) * prop.scale
         turn = radians(prop.turn[1])
-
-        def place(x: float, z: float) -> QPointF:
-            return self.to_pixels(
-                prop.at[0] + x * cos(turn) + z * sin(turn), prop.at[2] - x * sin(turn) + z * cos(turn)
-            )
-
         corners = [(low[0], low[2]), (high[0], low[2]), (high[0], high[2]), (low[0], high[2])]
-        return Outline(
-            QPolygonF([place(float(x), float(z)) for x, z in corners]),
-            place(float(low[0] + high[0]) / 2, float(high[2]) + 2.2 * HANDLE / self._scale()),
-        )
+        return [
+            (
+                prop.at[0] + float(x) * cos(turn) + float(z) * sin(turn),
+                prop.at[2] - float(x) * sin(turn) + float(z) * cos(turn),
+            )
+            for x, z in corners
+        ]
+
+    def find_outline(self, prop: Prop) -> Outline:
+        """Return a prop from above."""
+        corners = [self.to_pixels(x, z) for x, z in self.find_corners(prop)]
+        turn = radians(prop.turn[1])
+        front = (corners[2] + corners[3]) / 2 + QPointF(sin(turn), cos(turn)) * (2.2 * HANDLE)
+        return Outline(QPolygonF(corners), front)
 
     def find_prop(self, at: QPointF) -> str:
         """Return the id of the smallest prop at pixels, "" for none: what lies on a desk is above it."""
@@ -144,7 +147,8 @@ class FloorPlan(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.fillRect(self.rect(), QColor(look.ground))
         painter.setPen(QPen(QColor(look.line), 1))
-        for n in range(-int(self._span) - 1, int(self._span) + 2) if self._scale() else ():
+        metres = int(max(self.width(), self.height()) / 2 / self._scale()) + 1
+        for n in range(-metres, metres + 1):
             across, down = self.to_pixels(n, 0), self.to_pixels(0, n)
             painter.drawLine(QPointF(across.x(), 0), QPointF(across.x(), self.height()))
             painter.drawLine(QPointF(0, down.y()), QPointF(self.width(), down.y()))

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import msgspec
-import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
@@ -38,6 +37,7 @@ from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.props import add_prop, find_grip, remove_prop, set_prop
 from metagraph.graph.model import Project
 from metagraph.graph.prop import LARGEST, Prop
+from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.roles import find_roles
 
 SAMPLES = Path(__file__).resolve().parents[3] / "sample_clips" / "props"
@@ -85,7 +85,7 @@ class PropsPanel(QWidget):
         self._lay_out()
         document.changed.connect(self._follow)
         document.loaded.connect(self.refresh)
-        figures.props.changed.connect(self.plan.update)
+        figures.props.changed.connect(self.refresh)
         session.look.changed.connect(self.plan.update)
         self.refresh()
 
@@ -182,7 +182,10 @@ class PropsPanel(QWidget):
             words = tr("{name}, in {joint}", name=prop.name, joint=make_readable_name(prop.joint))
             item = QListWidgetItem(words if prop.joint else prop.name, self.list)
             item.setData(Qt.ItemDataRole.UserRole, ident)
-            item.setToolTip(prop.path)
+            problem = self.figures.props.find_problem(prop.path)
+            item.setToolTip(problem or prop.path)
+            if problem:
+                item.setText(tr("{name}: cannot be drawn", name=item.text()))
             if ident == self.current:
                 self.list.setCurrentItem(item)
         self._show_fields()
@@ -280,52 +283,48 @@ class PropsPanel(QWidget):
         """Read files on a thread, and add those that can be drawn as one step; say why others cannot."""
         from metagraph.formats.props.reader import read_prop
 
-        def read(_: object) -> tuple[list[tuple[Path, float]], list[FileError]]:
-            good, bad = [], []
+        def read(_: object) -> tuple[dict[Path, CharacterMesh], list[FileError]]:
+            good, bad = {}, []
             for path in paths:
                 try:
-                    mesh = read_prop(path)
+                    good[path] = read_prop(path)
                 except FileError as error:
                     bad.append(error)
-                else:
-                    good.append((path, float(-mesh.positions[:, 0].min())))
-                    widths[path] = float(np.ptp(mesh.positions[:, 0]))
             return good, bad
 
-        widths: dict[Path, float] = {}
-
-        def place(result: tuple[list[tuple[Path, float]], list[FileError]]) -> None:
+        def place(result: tuple[dict[Path, CharacterMesh], list[FileError]]) -> None:
             good, bad = result
+            for path, mesh in good.items():
+                self.figures.props.keep_mesh(path, mesh)
             if good:
-                self._place(good, widths)
+                self._place([path for path in paths if path in good], good)
             for error in bad:
                 self.document.failed.emit(tr_error(error))
 
         self.jobs.start("props", read, place, lambda error: self.document.failed.emit(tr_error(error)))
 
-    def _place(self, paths: Sequence[tuple[Path, float]], widths: Mapping[Path, float]) -> None:
-        """Add props in a row beside the character, to the viewer's right, none in another. paths: of each
-        prop, with how far its origin is from its left side; widths in metres.
-        """
+    def _place(self, paths: Sequence[Path], meshes: Mapping[Path, CharacterMesh]) -> None:
+        """Add props in a row beside the character, to the viewer's right, none in another."""
         added: list[str] = []
-        right = BESIDE
-        for prop in self.document.project.props.values():
-            outline = self.plan.find_outline(prop).corners.boundingRect()
-            if not prop.joint and abs(prop.at[2]) < BESIDE:
-                right = max(right, self.plan.to_floor(outline.topRight())[0] + GAP)
+        standing = [p for p in self.plan.props.values() if abs(p.at[2]) < BESIDE]
+        ends = [max(x for x, _ in self.plan.find_corners(prop)) + GAP for prop in standing]
 
         def edit(project: Project) -> Project:
-            at = right
-            for path, left in paths:
-                place = (round(at + left, 3), 0.0, 0.0)
-                prop = Prop(name=path.stem, path=make_path_for_project(path, self.document.folder), at=place)
+            right = max((BESIDE, *ends))
+            for path in paths:
+                low, high = (
+                    float(meshes[path].positions[:, 0].min()),
+                    float(meshes[path].positions[:, 0].max()),
+                )
+                at = (round(right - low, 3), 0.0, 0.0)
+                prop = Prop(name=path.stem, path=make_path_for_project(path, self.document.folder), at=at)
                 project, ident = add_prop(project, prop)
                 added.append(ident)
-                at += widths[path] + GAP
+                right += high - low + GAP
             return project
 
         words = (
-            tr("Add {name}", name=paths[0][0].stem)
+            tr("Add {name}", name=paths[0].stem)
             if len(paths) == 1
             else tr("Add {count} props", count=len(paths))
         )

@@ -104,6 +104,16 @@ def test_props_are_saved_moved_and_read(tmp_path: Path) -> None:
     assert whole.props[ident].path == (tmp_path / "props" / "cup.glb").resolve().as_posix()
 
 
+def test_opening_a_project_says_which_props_have_no_file(tmp_path: Path) -> None:
+    project, _ = add_prop(Toy().project(), CUP)
+    path = tmp_path / "p.metagraph.yaml"
+    save_project(project, path)
+    assert any("'cup' is not drawn" in note and "props/cup.glb" in note for note in open_project(path).notes)
+    (tmp_path / "props").mkdir()
+    (tmp_path / "props" / "cup.glb").write_bytes(b"x")
+    assert not any("cup" in note for note in open_project(path).notes)
+
+
 def test_two_peoples_props_are_merged() -> None:
     base = Toy().project()
     ours, mine = add_prop(base, CUP)

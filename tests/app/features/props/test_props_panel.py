@@ -11,6 +11,7 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 
+from metagraph.graph.editing.props import add_prop
 from metagraph.graph.prop import Prop
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -203,3 +204,41 @@ def test_what_lies_on_a_desk_is_chosen_before_the_desk(toys, panel, box):
     panel.numbers["at", 0].setValue(prop.at[0])
     assert panel.plan.find_prop(panel.plan.to_pixels(prop.at[0], prop.at[2])) == small
     assert panel.plan.find_prop(QPointF(2, 2)) == ""
+
+
+def test_props_are_drawn_after_the_project_was_saved_in_another_folder(toys, panel, box, tmp_path):
+    put(toys, panel, box)
+    for name in ("one", "two"):
+        place = tmp_path / name / "p.metagraph.yaml"
+        place.parent.mkdir()
+        panel.document.save(place)
+        assert only(panel).path == "../box.stl"
+        toys.wait(lambda: count_drawn(toys) == 1)
+
+
+def count_drawn(drive) -> int:
+    """The props in the picture."""
+    return sum(actor.figure.skeleton.names == ("Prop",) for actor in drive.preview.scene().actors)
+
+
+def test_a_prop_whose_file_is_gone_is_said_without_the_panel_and_marked_in_it(toys, tmp_path):
+    project, _ = add_prop(toys.document.project, Prop(name="lamp", path=str(tmp_path / "gone.obj")))
+    told = []
+    toys.shell.stage.figures.props.told.connect(told.append)
+    toys.document.load(project, None)
+    toys.wait(lambda: any("gone.obj" in words for words in told))
+    assert "gone.obj" in toys.window.statusBar().currentMessage()
+    toys.shell.show("props")
+    panel = toys.shell.panel("props")
+    assert panel.list.item(0).text() == "lamp: cannot be drawn" and "gone.obj" in panel.list.item(0).toolTip()
+    toys.docks["props"].close()
+
+
+def test_a_file_that_is_added_is_read_once(toys, panel, box, monkeypatch):
+    import metagraph.formats.props.reader as reader
+
+    read, times = reader.read_prop, []
+    monkeypatch.setattr(reader, "read_prop", lambda path: times.append(path) or read(path))
+    put(toys, panel, box)
+    toys.settle()
+    assert len(times) == 1
