@@ -12,6 +12,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QPushButton, QWidget
 
+from app.widgets.lane_geometry import place_lanes
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.store import make_paths_absolute
 from metagraph.graph import edits, requests
@@ -182,24 +183,20 @@ def test_a_blend_takes_a_click_and_a_drag(hand: CountedHand) -> None:
     assert hand.taken == (1, 0, 1)
 
 
-@pytest.mark.nightly
 def test_a_certain_gesture_is_requested_by_one_drag(hand: CountedHand) -> None:
     drive = hand.drive
     drive.workspaces.choose("perform")
     drive.settle()
     name = next(a.name for a in drive.document.project.actions() if a.layer == "arms" and a.kind == "gesture")
     clip = next(a.clip for a in drive.document.project.actions() if a.name == name)
-    lanes = drive.timeline.lanes
-    from app.widgets.lane_geometry import place_lanes
-
-    lane = place_lanes(lanes.height(), lanes.sizes)["arms"]
-    there = lanes, QPoint(round(lanes.scale().x(3.0)), round(lane.center().y()))
     if not drive.library.isVisible():
         drive.places.show("library")
         drive.settle()
-    hand.drag(
-        drive.card(drive.document.project.clips[clip].name), there, lambda: bool(drive.performance.asks)
-    )
+    card = drive.card(drive.document.project.clips[clip].name)
+    lanes = drive.timeline.lanes
+    lane = place_lanes(lanes.height(), lanes.sizes)["arms"]
+    there = lanes, QPoint(round(0.7 * lanes.width()), round(lane.center().y()))
+    hand.drag(card, there, lambda: bool(drive.performance.asks))
     assert isinstance(drive.performance.asks[0], requests.Play) and hand.taken == (0, 0, 1)
 
 

@@ -25,7 +25,7 @@ def contribute(shell: Shell) -> Contribution:
                 library.make_panel,
                 late=False,
                 where={"label": "large", "graph": "list"},
-                opens={"time": "list"},
+                opens={"time": "list", "perform": "side"},
                 least=(200, 180),
             ),
         ),
