@@ -54,10 +54,13 @@ def goes_on(speeches: Sequence[Speech], ident: str, now: float) -> bool:
 
 def find_utterances(track: Track, what: str, now: float) -> list[str]:
     """Return the ids of the utterances that are not over at `now`; what: of one, "" for all."""
+    if what != "":
+        return [what] if goes_on(track.speeches, what, now) else []
+    last = {s.id: s for s in track.speeches}
+    lasting = {s.id for s in track.speeches if (s.end > now or s.more) and last[s.id] is s}
     out: list[str] = []
     for speech in track.speeches:
-        fits = what == "" or speech.id == what
-        if fits and speech.id not in out and goes_on(track.speeches, speech.id, now):
+        if speech.id in lasting and speech.id not in out:
             out.append(speech.id)
     return out
 

@@ -103,10 +103,22 @@ inline bool goes_on(const List<Ref<Speech>>& speeches, const std::string& ident,
 
 /// Return the ids of the utterances that are not over at `now`; what: of one, "" for all.
 inline List<std::string> find_utterances(const Ref<Track>& track, const std::string& what, double now) {
+    if (what != "") {
+        return utterances::goes_on(track->speeches, what, now) ? List<std::string>{what} : List<std::string>{};
+    }
+    Map<std::string, Ref<Speech>> last;
+    for (const auto& s : track->speeches) {
+        last[s->id] = s;
+    }
+    Set<std::string> lasting;
+    for (const auto& s : track->speeches) {
+        if ((s->end > now || s->more) && last.at(s->id) == s) {
+            lasting.insert(s->id);
+        }
+    }
     List<std::string> out;
     for (const auto& speech : track->speeches) {
-        bool fits = what == "" || speech->id == what;
-        if (fits && !lang::contains(out, speech->id) && utterances::goes_on(track->speeches, speech->id, now)) {
+        if (lang::contains(lasting, speech->id) && !lang::contains(out, speech->id)) {
             out.push_back(speech->id);
         }
     }

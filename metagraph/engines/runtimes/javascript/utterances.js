@@ -68,10 +68,14 @@ export function goesOn(speeches, ident, now) {
  * @returns {string[]}
  */
 export function findUtterances(track, what, now) {
+  if (what !== "") {
+    return goesOn(track.speeches, what, now) ? [what] : [];
+  }
+  const last = new Map(track.speeches.map((s) => [s.id, s]));
+  const lasting = new Set(track.speeches.filter((s) => (s.end > now || s.more) && last.get(s.id) === s).map((s) => s.id));
   const out = [];
   for (const speech of track.speeches) {
-    const fits = what === "" || speech.id === what;
-    if (fits && !out.includes(speech.id) && goesOn(track.speeches, speech.id, now)) {
+    if (lasting.has(speech.id) && !out.includes(speech.id)) {
       out.push(speech.id);
     }
   }

@@ -55,11 +55,17 @@ namespace Metagraph
         /// <summary>Return the ids of the utterances that are not over at `now`; what: of one, "" for all.</summary>
         public static List<string> FindUtterances(Track track, string what, double now)
         {
+            if (what != "")
+            {
+                return GoesOn(track.Speeches, what, now) ? new List<string> { what } : new List<string>();
+            }
+            var last = track.Speeches.Select(s => (s.Id, s)).ToMap();
+            var lasting = new HashSet<string>(track.Speeches.Where(s => (s.End > now || s.More)
+                && last[s.Id] == s).Select(s => s.Id));
             var out_ = new List<string>();
             foreach (Speech speech in track.Speeches)
             {
-                var fits = what == "" || speech.Id == what;
-                if (fits && !out_.Contains(speech.Id) && GoesOn(track.Speeches, speech.Id, now))
+                if (lasting.Contains(speech.Id) && !out_.Contains(speech.Id))
                 {
                     out_.Add(speech.Id);
                 }

@@ -47,10 +47,18 @@ static func goes_on(speeches, ident, now):
 
 # Return the ids of the utterances that are not over at `now`; what: of one, "" for all.
 static func find_utterances(track, what, now):
+	if what != "":
+		return [what] if goes_on(track.speeches, what, now) else []
+	var last = {}
+	for s in track.speeches:
+		last[s.id] = s
+	var lasting = {}
+	for s in track.speeches:
+		if (s.end > now or s.more) and last[s.id] == s:
+			Util.add_to(lasting, s.id)
 	var out = []
 	for speech in track.speeches:
-		var fits = what == "" or speech.id == what
-		if fits and not out.has(speech.id) and goes_on(track.speeches, speech.id, now):
+		if lasting.has(speech.id) and not out.has(speech.id):
 			out.append(speech.id)
 	return out
 
