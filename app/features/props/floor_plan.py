@@ -152,6 +152,9 @@ class FloorPlan(QWidget):
             across, down = self.to_pixels(n, 0), self.to_pixels(0, n)
             painter.drawLine(QPointF(across.x(), 0), QPointF(across.x(), self.height()))
             painter.drawLine(QPointF(0, down.y()), QPointF(self.width(), down.y()))
+        painter.setPen(QColor(look.dim))
+        words = QRectF(6, self.height() - 20, self.width() - 12, 18)
+        painter.drawText(words, Qt.AlignmentFlag.AlignRight, tr("Viewer's side"))
         middle, radius = self.to_pixels(0, 0), 0.2 * self._scale()
         painter.setBrush(QColor(look.dim))
         painter.setPen(Qt.PenStyle.NoPen)
@@ -167,9 +170,6 @@ class FloorPlan(QWidget):
             if chosen:
                 painter.setBrush(QColor(look.text))
                 painter.drawEllipse(outline.handle, HANDLE, HANDLE)
-        painter.setPen(QColor(look.dim))
-        words = QRectF(0, self.height() - 20, self.width(), 18)
-        painter.drawText(words, Qt.AlignmentFlag.AlignCenter, tr("Viewer's side"))
         painter.end()
 
     # --- mouse and keys

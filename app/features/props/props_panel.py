@@ -50,6 +50,7 @@ FIELDS = (
     ("turn", 2, tr_noop("Roll"), "°", 5.0, 1),
 )
 BESIDE, GAP = 0.5, 0.1  # metres: from the character to the first prop that is added, and between props
+NUMBER = 72  # pixels: the least width of a number
 WIDE = 560  # pixels from which the parts are side by side
 HANDS = ("right_hand", "left_hand", "head")  # roles of joints that are offered before the other joints
 
@@ -104,6 +105,8 @@ class PropsPanel(QWidget):
         grid.addWidget(QLabel(tr("Carried by"), self.fields), 0, 0)
         grid.addWidget(self.joint, 0, 1, 1, 3)
         self.joint.setMaxVisibleItems(14)
+        self.joint.setSizeAdjustPolicy(ComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.joint.setMinimumContentsLength(10)
         self.numbers: dict[tuple[str, int], DoubleSpinBox] = {}
         for n, (name, place, words, unit, step, decimals) in enumerate(FIELDS):
             row, column = 1 + n // 3, 2 * (n % 3)
@@ -124,7 +127,7 @@ class PropsPanel(QWidget):
         self._layout.setSpacing(12)
         self._layout.addLayout(left, 2)
         self._layout.addWidget(self.plan, 3)
-        self._layout.addWidget(self.fields, 2)
+        self._layout.addWidget(self.fields)
         area = QScrollArea(self)
         area.setWidgetResizable(True)
         area.setWidget(inner)
@@ -154,6 +157,7 @@ class PropsPanel(QWidget):
             self.fields, minimum=-LARGEST, maximum=LARGEST, singleStep=step, decimals=decimals, suffix=unit
         )
         box.setKeyboardTracking(False)
+        box.setMinimumWidth(NUMBER)
         box.setAccessibleName(words)
         box.valueChanged.connect(lambda value: self._set_number(key, value))
         self.numbers[key] = box
