@@ -55,7 +55,7 @@ class FloorPlan(QWidget):
         self.session, self.meshes, self.change = session, meshes, change
         self.current = ""
         self.hand = PointerHand()
-        self._span = LEAST  # metres in sight, kept while a drag lasts
+        self._held = 0.0  # metres in sight, kept while a drag lasts
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMinimumSize(160, 110)
         self.setAccessibleName(tr("Floor from above"))
@@ -73,10 +73,12 @@ class FloorPlan(QWidget):
 
     def _scale(self) -> float:
         """Return pixels a metre."""
-        if self.hand.gesture is None:
-            far = [max(abs(p.at[0]), abs(p.at[2])) for p in self.props.values()]
-            self._span = max(LEAST, ROOM * max(far, default=0.0))
-        return max(1, min(self.width(), self.height())) / 2 / self._span
+        return max(1, min(self.width(), self.height())) / 2 / (self._held or self._find_span())
+
+    def _find_span(self) -> float:
+        """Return how many metres from the character are in sight."""
+        far = [max(abs(p.at[0]), abs(p.at[2])) for p in self.props.values()]
+        return max(LEAST, ROOM * max(far, default=0.0))
 
     def to_pixels(self, x: float, z: float) -> QPointF:
         """Return where a place on the floor is, in pixels. x, z: metres."""
@@ -178,6 +180,7 @@ class FloorPlan(QWidget):
         if event.button() != Qt.MouseButton.LeftButton:
             return
         at, now = event.position(), self.props.get(self.current)
+        self._held = self._find_span()
         if now is not None:
             handle = self.find_outline(now).handle
             if hypot(handle.x() - at.x(), handle.y() - at.y()) <= 2 * HANDLE:
@@ -193,6 +196,7 @@ class FloorPlan(QWidget):
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         self.hand.release(event)
+        self._held = 0.0
         self.update()
 
     def event(self, event: QEvent) -> bool:
