@@ -156,7 +156,7 @@ def pause(track: Track, ident: str, made: AbstractSet[str], stop: float, slot: f
             held.append(replace(speech, start=speech.start + by, end=speech.end + by))
     last = track.last_speech(ident)
     if len(held) == 0 and last is not None and last.more and last.start < PAUSED:
-        held.append(Speech(ident, slot, slot, None, "", last.priority, None, None, 0.0, True))
+        held.append(Speech(ident, slot, slot, None, "", last.priority, more=True, asked=last.asked))
     if len(held) == 0:
         return track
     moods = [
@@ -211,15 +211,8 @@ def explain_end(speeches: Sequence[Speech], speech: Speech) -> str:
     it is not over there.
     """
     coming = next((s for s in speeches if s.id == speech.id and s.start > speech.start), None)
-    if speech.more or (coming is not None and is_same_utterance(speech, coming)):
+    if speech.more or (coming is not None and coming.asked == speech.asked):
         return ""
     if speech.length is None:
         return "finished"
     return "interrupted" if coming is None or coming.start > speech.end + TOGETHER else "replaced"
-
-
-def is_same_utterance(one: Speech, other: Speech) -> bool:
-    """Return whether a later piece of the same id continues an earlier one."""
-    if one.more or (other.skip > 0 and one.length is not None and one.over is None):
-        return True
-    return one.length is None and (other.start >= PAUSED or other.start - one.end < TOGETHER)

@@ -14,6 +14,7 @@ from metagraph.playback.life.spots import is_same_spot, named
 from metagraph.playback.life.track import Track
 from metagraph.playback.life.utterances import (
     PAUSED,
+    TOGETHER,
     break_off,
     find_slot,
     find_stop,
@@ -141,6 +142,10 @@ def heard(
         if ident not in words.on:
             over.add(ident)
     left = words.leave(left.without(over, now))
+    for ident in over:
+        open_ = left.last_speech(ident)
+        if open_ is not None and open_.more:  # something else takes its place
+            left = finish_speech(left, ident, soon)
     lasting = Track(
         more.looks, tuple(words.said), more.modes, more.places, more.blinks, tuple(stays), tuple(words.moods)
     )
@@ -206,22 +211,24 @@ def add_speeches(meant: Meaning, track: Track, soon: float) -> AddedSpeeches:
         if paces and asked.timing is None and asked.line is None:
             asked = pace_speech(meant.alphabet, asked)
         one = going_on(last, asked, now)
+        continues = False
         if one is not asked and last is not None and one.start == last.start:
             begun.add(one.id)
-            on.add(one.id)
+            continues = True
             said = [s for s in said if s.id != one.id or s.start < one.start]
             if last is before:
                 said.extend([s for s in track.speeches if s.id == one.id and s is not last])
         elif one is asked and not taken:
             one = behind([*track.speeches, *said], asked, now)
             opens = last is not None and takes_more(last) and told.line is None and one.start <= now
-            if one is not asked or opens:
-                on.add(one.id)
+            continues = one is not asked or opens
+        if continues:
+            on.add(one.id)
         if one.start != told.start:
             later[one.id] = one.start - told.start
         if one is asked and one.id not in on and track.last_speech(one.id) is not None:
             anew.add(one.id)
-        said.append(one)
+        said.append(replace(one, asked=find_asked(track, last, continues, one.id, soon)))
     opened = {s.id for s in said if s.more}
     moods: list[MoodFrom] = []
     for m in meant.moods:
@@ -229,6 +236,16 @@ def add_speeches(meant: Meaning, track: Track, soon: float) -> AddedSpeeches:
         end = PAUSED if m.id in opened else m.end + by
         moods.append(MoodFrom(m.id, m.start + by, m.valence, m.arousal, m.intensity, end))
     return AddedSpeeches(said, begun, on, anew, moods)
+
+
+def find_asked(track: Track, last: Speech | None, continues: bool, ident: str, soon: float) -> float:
+    """Return when the utterance of a new piece was asked for. last: the piece before it, None if that is taken
+    back; continues: whether the new one goes on from it.
+    """
+    if last is not None and continues:
+        return last.asked
+    known = track.last_speech(ident) if last is None else last
+    return soon if known is None else max(soon, known.asked + TOGETHER)
 
 
 def _steer(requests: Sequence[MetaRequest], heard: Heard, meant: Meaning, now: float, soon: float) -> Heard:

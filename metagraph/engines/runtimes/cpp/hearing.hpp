@@ -34,6 +34,13 @@ inline Ref<Heard> heard(
     const List<std::string>& turning
 );
 inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Track>& track, double soon);
+inline double find_asked(
+    const Ref<Track>& track,
+    const Ref<Speech>& last,
+    bool continues,
+    const std::string& ident,
+    double soon
+);
 inline Ref<Heard> _steer(
     const List<Ref<MetaRequest>>& requests,
     const Ref<Heard>& heard,
@@ -511,6 +518,12 @@ inline Ref<Heard> heard(
         }
     }
     left = words->leave(left->without(over, now));
+    for (const auto& ident : over) {
+        Ref<Speech> open_ = left->last_speech(ident);
+        if (open_ != nullptr && open_->more) { // something else takes its place
+            left = utterances::finish_speech(left, ident, soon);
+        }
+    }
     Ref<Track> lasting = lang::made<Track>(
         more->looks,
         words->said,
@@ -557,7 +570,8 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
                 told->timing,
                 told->skip,
                 told->more,
-                told->over
+                told->over,
+                told->asked
             );
         }
         bool paces = told->more || (last != nullptr && last->more);
@@ -565,9 +579,10 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
             asked = items::pace_speech(meant->alphabet, asked);
         }
         Ref<Speech> one = items::going_on(last, asked, now);
+        bool continues = false;
         if (one != asked && last != nullptr && one->start == last->start) {
             begun.insert(one->id);
-            on.insert(one->id);
+            continues = true;
             List<Ref<Speech>> found;
             for (const auto& s : said) {
                 if (s->id != one->id || s->start < one->start) {
@@ -590,9 +605,10 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
                 && utterances::takes_more(last)
                 && !told->line.has_value()
                 && one->start <= now;
-            if (one != asked || opens) {
-                on.insert(one->id);
-            }
+            continues = one != asked || opens;
+        }
+        if (continues) {
+            on.insert(one->id);
         }
         if (one->start != told->start) {
             later[one->id] = one->start - told->start;
@@ -600,7 +616,20 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
         if (one == asked && !lang::contains(on, one->id) && track->last_speech(one->id) != nullptr) {
             anew.insert(one->id);
         }
-        said.push_back(one);
+        said.push_back(lang::made<Speech>(
+            one->id,
+            one->start,
+            one->end,
+            one->line,
+            one->text,
+            one->priority,
+            one->length,
+            one->timing,
+            one->skip,
+            one->more,
+            one->over,
+            hearing::find_asked(track, last, continues, one->id, soon)
+        ));
     }
     Set<std::string> opened;
     for (const auto& s : said) {
@@ -615,6 +644,22 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
         moods.push_back(lang::made<MoodFrom>(m->id, m->start + by, m->valence, m->arousal, m->intensity, end));
     }
     return lang::made<AddedSpeeches>(said, begun, on, anew, moods);
+}
+
+/// Return when the utterance of a new piece was asked for. last: the piece before it, None if that is taken back;
+/// continues: whether the new one goes on from it.
+inline double find_asked(
+    const Ref<Track>& track,
+    const Ref<Speech>& last,
+    bool continues,
+    const std::string& ident,
+    double soon
+) {
+    if (last != nullptr && continues) {
+        return last->asked;
+    }
+    Ref<Speech> known = last == nullptr ? track->last_speech(ident) : last;
+    return known == nullptr ? soon : std::max(soon, known->asked + utterances::TOGETHER);
 }
 
 /// Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the plan before.

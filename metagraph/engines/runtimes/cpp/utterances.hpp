@@ -66,7 +66,6 @@ inline Ref<Track> _moved(
     double by
 );
 inline std::string explain_end(const List<Ref<Speech>>& speeches, const Ref<Speech>& speech);
-inline bool is_same_utterance(const Ref<Speech>& one, const Ref<Speech>& other);
 
 }  // namespace utterances
 
@@ -247,7 +246,8 @@ inline Ref<Track> _closed(
             last->timing,
             last->skip,
             false,
-            silent ? std::optional<double>(now) : last->over
+            silent ? std::optional<double>(now) : last->over,
+            last->asked
         );
         end = std::max(last->end, now);
         break;
@@ -290,7 +290,8 @@ inline Ref<Track> pause(
                 items::cut(speech, stop)->timing,
                 items::cut(speech, stop)->skip,
                 false,
-                items::cut(speech, stop)->over
+                items::cut(speech, stop)->over,
+                items::cut(speech, stop)->asked
             ));
             double skip = stop - items::find_line_start(speech);
             held.push_back(lang::made<Speech>(
@@ -304,7 +305,8 @@ inline Ref<Track> pause(
                 speech->timing,
                 skip,
                 speech->more,
-                speech->over
+                speech->over,
+                speech->asked
             ));
         } else {
             held.push_back(lang::made<Speech>(
@@ -318,7 +320,8 @@ inline Ref<Track> pause(
                 speech->timing,
                 speech->skip,
                 speech->more,
-                speech->over
+                speech->over,
+                speech->asked
             ));
         }
     }
@@ -334,7 +337,9 @@ inline Ref<Track> pause(
             std::nullopt,
             nullptr,
             0.0,
-            true
+            true,
+            std::nullopt,
+            last->asked
         ));
     }
     if (lang::len(held) == 0) {
@@ -390,7 +395,8 @@ inline Ref<Track> resume(const Ref<Track>& track, const std::string& ident, cons
                 s->timing,
                 s->skip,
                 s->more,
-                s->over
+                s->over,
+                s->asked
             ));
         }
     }
@@ -504,7 +510,7 @@ inline std::string explain_end(const List<Ref<Speech>>& speeches, const Ref<Spee
         }
     }
     Ref<Speech> coming = first;
-    if (speech->more || (coming != nullptr && utterances::is_same_utterance(speech, coming))) {
+    if (speech->more || (coming != nullptr && coming->asked == speech->asked)) {
         return "";
     }
     if (!speech->length.has_value()) {
@@ -513,15 +519,6 @@ inline std::string explain_end(const List<Ref<Speech>>& speeches, const Ref<Spee
     return (coming == nullptr || coming->start > speech->end + utterances::TOGETHER)
         ? std::string("interrupted")
         : std::string("replaced");
-}
-
-/// Return whether a later piece of the same id continues an earlier one.
-inline bool is_same_utterance(const Ref<Speech>& one, const Ref<Speech>& other) {
-    if (one->more || (other->skip > 0 && one->length.has_value() && !one->over.has_value())) {
-        return true;
-    }
-    return !one->length.has_value()
-        && (other->start >= utterances::PAUSED || other->start - one->end < utterances::TOGETHER);
 }
 
 }  // namespace utterances

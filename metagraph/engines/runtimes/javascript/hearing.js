@@ -11,6 +11,7 @@ import { isSameSpot, named } from "./spots.js";
 import { Track } from "./track.js";
 import { 
   PAUSED,
+  TOGETHER,
   breakOff,
   findSlot,
   findStop,
@@ -168,6 +169,12 @@ export function heard(requests, track, meant, now, soon, turning) {
     }
   }
   left = words.leave(left.without(over, now));
+  for (const ident of over) {
+    const open = left.lastSpeech(ident);
+    if (open !== null && open.more) { // something else takes its place
+      left = finishSpeech(left, ident, soon);
+    }
+  }
   const lasting = new Track(more.looks, [...words.said], more.modes, more.places, more.blinks, [...stays], [...words.moods]);
   const said = new Heard(left.joined(lasting), meant.requests, taken, stopped, touched);
   return _steer(requests, said, meant, now, soon);
@@ -245,9 +252,10 @@ export function addSpeeches(meant, track, soon) {
       asked = paceSpeech(meant.alphabet, asked);
     }
     let one = goingOn(last, asked, now);
+    let continues = false;
     if (one !== asked && last !== null && one.start === last.start) {
       begun.add(one.id);
-      on.add(one.id);
+      continues = true;
       said = said.filter((s) => s.id !== one.id || s.start < one.start);
       if (last === before) {
         said.push(...track.speeches.filter((s) => s.id === one.id && s !== last));
@@ -255,9 +263,10 @@ export function addSpeeches(meant, track, soon) {
     } else if (one === asked && !taken) {
       one = behind([...track.speeches, ...said], asked, now);
       const opens = last !== null && takesMore(last) && told.line === null && one.start <= now;
-      if (one !== asked || opens) {
-        on.add(one.id);
-      }
+      continues = one !== asked || opens;
+    }
+    if (continues) {
+      on.add(one.id);
     }
     if (one.start !== told.start) {
       later.set(one.id, one.start - told.start);
@@ -265,7 +274,7 @@ export function addSpeeches(meant, track, soon) {
     if (one === asked && !on.has(one.id) && track.lastSpeech(one.id) !== null) {
       anew.add(one.id);
     }
-    said.push(one);
+    said.push(but(one, { asked: findAsked(track, last, continues, one.id, soon) }));
   }
   const opened = new Set(said.filter((s) => s.more).map((s) => s.id));
   const moods = [];
@@ -275,6 +284,24 @@ export function addSpeeches(meant, track, soon) {
     moods.push(new MoodFrom(m.id, m.start + by, m.valence, m.arousal, m.intensity, end));
   }
   return new AddedSpeeches(said, begun, on, anew, moods);
+}
+
+/**
+ * Return when the utterance of a new piece was asked for. last: the piece before it, None if that is taken back; continues:
+ * whether the new one goes on from it.
+ * @param {Track} track
+ * @param {?Speech} last
+ * @param {boolean} continues
+ * @param {string} ident
+ * @param {number} soon
+ * @returns {number}
+ */
+export function findAsked(track, last, continues, ident, soon) {
+  if (last !== null && continues) {
+    return last.asked;
+  }
+  const known = last === null ? track.lastSpeech(ident) : last;
+  return known === null ? soon : Math.max(soon, known.asked + TOGETHER);
 }
 
 /**

@@ -224,7 +224,7 @@ export function pause(track, ident, made, stop, slot) {
   }
   const last = track.lastSpeech(ident);
   if (held.length === 0 && last !== null && last.more && last.start < PAUSED) {
-    held.push(new Speech(ident, slot, slot, null, "", last.priority, null, null, 0, true));
+    held.push(new Speech(ident, slot, slot, null, "", last.priority, null, null, 0, true, null, last.asked));
   }
   if (held.length === 0) {
     return track;
@@ -306,24 +306,11 @@ function _moved(track, speeches, made, low, high, by) {
  */
 export function explainEnd(speeches, speech) {
   const coming = speeches.find((s) => s.id === speech.id && s.start > speech.start) ?? null;
-  if (speech.more || (coming !== null && isSameUtterance(speech, coming))) {
+  if (speech.more || (coming !== null && coming.asked === speech.asked)) {
     return "";
   }
   if (speech.length === null) {
     return "finished";
   }
   return (coming === null || coming.start > speech.end + TOGETHER) ? "interrupted" : "replaced";
-}
-
-/**
- * Return whether a later piece of the same id continues an earlier one.
- * @param {Speech} one
- * @param {Speech} other
- * @returns {boolean}
- */
-export function isSameUtterance(one, other) {
-  if (one.more || (other.skip > 0 && one.length !== null && one.over === null)) {
-    return true;
-  }
-  return one.length === null && (other.start >= PAUSED || other.start - one.end < TOGETHER);
 }

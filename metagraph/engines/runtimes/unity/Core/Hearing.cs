@@ -420,6 +420,14 @@ namespace Metagraph
                 }
             }
             left = words.Leave(left.Without(over, now));
+            foreach (string ident in over)
+            {
+                var open = left.LastSpeech(ident);
+                if (open != null && open.More) // something else takes its place
+                {
+                    left = UtterancesRules.FinishSpeech(left, ident, soon);
+                }
+            }
             var lasting = new Track(
                 more.Looks,
                 words.Said.ToList(),
@@ -464,7 +472,8 @@ namespace Metagraph
                         told.Timing,
                         told.Skip,
                         told.More,
-                        told.Over
+                        told.Over,
+                        told.Asked
                     );
                 }
                 var paces = told.More || (last != null && last.More);
@@ -473,10 +482,11 @@ namespace Metagraph
                     asked = ItemsRules.PaceSpeech(meant.Alphabet, asked);
                 }
                 var one = ItemsRules.GoingOn(last, asked, now);
+                var continues = false;
                 if (one != asked && last != null && one.Start == last.Start)
                 {
                     begun.Add(one.Id);
-                    on.Add(one.Id);
+                    continues = true;
                     said = said.Where(s => s.Id != one.Id || s.Start < one.Start).ToList();
                     if (last == before)
                     {
@@ -487,10 +497,11 @@ namespace Metagraph
                 {
                     one = ItemsRules.Behind(track.Speeches.Concat(said).ToList(), asked, now);
                     var opens = last != null && UtterancesRules.TakesMore(last) && told.Line == null && one.Start <= now;
-                    if (one != asked || opens)
-                    {
-                        on.Add(one.Id);
-                    }
+                    continues = one != asked || opens;
+                }
+                if (continues)
+                {
+                    on.Add(one.Id);
                 }
                 if (one.Start != told.Start)
                 {
@@ -500,7 +511,20 @@ namespace Metagraph
                 {
                     anew.Add(one.Id);
                 }
-                said.Add(one);
+                said.Add(new Speech(
+                    one.Id,
+                    one.Start,
+                    one.End,
+                    one.Line,
+                    one.Text,
+                    one.Priority,
+                    one.Length,
+                    one.Timing,
+                    one.Skip,
+                    one.More,
+                    one.Over,
+                    FindAsked(track, last, continues, one.Id, soon)
+                ));
             }
             var opened = new HashSet<string>(said.Where(s => s.More).Select(s => s.Id));
             var moods = new List<MoodFrom>();
@@ -511,6 +535,20 @@ namespace Metagraph
                 moods.Add(new MoodFrom(m.Id, m.Start + by, m.Valence, m.Arousal, m.Intensity, end));
             }
             return new AddedSpeeches(said, begun, on, anew, moods);
+        }
+
+        /// <summary>
+        /// Return when the utterance of a new piece was asked for. last: the piece before it, None if that is taken back;
+        /// continues: whether the new one goes on from it.
+        /// </summary>
+        public static double FindAsked(Track track, Speech last, bool continues, string ident, double soon)
+        {
+            if (last != null && continues)
+            {
+                return last.Asked;
+            }
+            var known = last == null ? track.LastSpeech(ident) : last;
+            return known == null ? soon : Math.Max(soon, known.Asked + UtterancesRules.Together);
         }
 
         /// <summary>

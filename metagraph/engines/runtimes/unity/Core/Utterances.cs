@@ -171,7 +171,8 @@ namespace Metagraph
                     last.Timing,
                     last.Skip,
                     false,
-                    silent ? now : last.Over
+                    silent ? now : last.Over,
+                    last.Asked
                 );
                 end = Math.Max(last.End, now);
                 break;
@@ -213,7 +214,8 @@ namespace Metagraph
                         ItemsRules.Cut(speech, stop).Timing,
                         ItemsRules.Cut(speech, stop).Skip,
                         false,
-                        ItemsRules.Cut(speech, stop).Over
+                        ItemsRules.Cut(speech, stop).Over,
+                        ItemsRules.Cut(speech, stop).Asked
                     ));
                     var skip = stop - ItemsRules.FindLineStart(speech);
                     held.Add(new Speech(
@@ -227,7 +229,8 @@ namespace Metagraph
                         speech.Timing,
                         skip,
                         speech.More,
-                        speech.Over
+                        speech.Over,
+                        speech.Asked
                     ));
                 }
                 else
@@ -243,14 +246,15 @@ namespace Metagraph
                         speech.Timing,
                         speech.Skip,
                         speech.More,
-                        speech.Over
+                        speech.Over,
+                        speech.Asked
                     ));
                 }
             }
             var last = track.LastSpeech(ident);
             if (held.Count == 0 && last != null && last.More && last.Start < Paused)
             {
-                held.Add(new Speech(ident, slot, slot, null, "", last.Priority, null, null, 0.0, true));
+                held.Add(new Speech(ident, slot, slot, null, "", last.Priority, null, null, 0.0, true, null, last.Asked));
             }
             if (held.Count == 0)
             {
@@ -292,7 +296,8 @@ namespace Metagraph
                 s.Timing,
                 s.Skip,
                 s.More,
-                s.Over
+                s.Over,
+                s.Asked
             )).ToList();
             var end = held[held.Count - 1].More ? Paused : held[held.Count - 1].End + by;
             var moods = track.Moods.Select(m => (m.Id == ident && m.End == Paused) ? Until(m, end) : m).ToList();
@@ -365,7 +370,7 @@ namespace Metagraph
         public static string ExplainEnd(List<Speech> speeches, Speech speech)
         {
             var coming = speeches.Where(s => s.Id == speech.Id && s.Start > speech.Start).FirstOrDefault();
-            if (speech.More || (coming != null && IsSameUtterance(speech, coming)))
+            if (speech.More || (coming != null && coming.Asked == speech.Asked))
             {
                 return "";
             }
@@ -374,16 +379,6 @@ namespace Metagraph
                 return "finished";
             }
             return (coming == null || coming.Start > speech.End + Together) ? "interrupted" : "replaced";
-        }
-
-        /// <summary>Return whether a later piece of the same id continues an earlier one.</summary>
-        public static bool IsSameUtterance(Speech one, Speech other)
-        {
-            if (one.More || (other.Skip > 0 && one.Length != null && one.Over == null))
-            {
-                return true;
-            }
-            return one.Length == null && (other.Start >= Paused || other.Start - one.End < Together);
         }
     }
 }

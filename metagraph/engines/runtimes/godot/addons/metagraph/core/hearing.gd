@@ -184,6 +184,10 @@ static func heard(requests, track, meant, now, soon, turning):
 		if not words.on.has(ident):
 			Util.add_to(over, ident)
 	left = words.leave(left.without(over, now))
+	for ident in over:
+		var open_ = left.last_speech(ident)
+		if open_ != null and open_.more:  # something else takes its place
+			left = Utterances.finish_speech(left, ident, soon)
 	var lasting = Track.Track.new(
 		more.looks,
 		Util.list(words.said),
@@ -278,15 +282,17 @@ static func add_speeches(meant, track, soon):
 				told.timing,
 				told.skip,
 				told.more,
-				told.over
+				told.over,
+				told.asked
 			)
 		var paces = told.more or (last != null and last.more)
 		if paces and asked.timing == null and asked.line == null:
 			asked = Items.pace_speech(meant.alphabet, asked)
 		var one = Items.going_on(last, asked, now)
+		var continues = false
 		if one != asked and last != null and one.start == last.start:
 			Util.add_to(begun, one.id)
-			Util.add_to(on, one.id)
+			continues = true
 			var found = []
 			for s in said:
 				if s.id != one.id or s.start < one.start:
@@ -301,13 +307,27 @@ static func add_speeches(meant, track, soon):
 		elif one == asked and not taken:
 			one = Items.behind(track.speeches + said, asked, now)
 			var opens = last != null and Utterances.takes_more(last) and told.line == null and one.start <= now
-			if one != asked or opens:
-				Util.add_to(on, one.id)
+			continues = one != asked or opens
+		if continues:
+			Util.add_to(on, one.id)
 		if one.start != told.start:
 			later[one.id] = one.start - told.start
 		if one == asked and not on.has(one.id) and track.last_speech(one.id) != null:
 			Util.add_to(anew, one.id)
-		said.append(one)
+		said.append(Items.Speech.new(
+			one.id,
+			one.start,
+			one.end,
+			one.line,
+			one.text,
+			one.priority,
+			one.length,
+			one.timing,
+			one.skip,
+			one.more,
+			one.over,
+			find_asked(track, last, continues, one.id, soon)
+		))
 	var opened = {}
 	for s in said:
 		if s.more:
@@ -318,6 +338,15 @@ static func add_speeches(meant, track, soon):
 		var end = Utterances.PAUSED if opened.has(m.id) else m.end + by
 		moods.append(Mood.MoodFrom.new(m.id, m.start + by, m.valence, m.arousal, m.intensity, end))
 	return AddedSpeeches.new(said, begun, on, anew, moods)
+
+
+# Return when the utterance of a new piece was asked for. last: the piece before it, None if that is taken back; continues:
+# whether the new one goes on from it.
+static func find_asked(track, last, continues, ident, soon):
+	if last != null and continues:
+		return last.asked
+	var known = track.last_speech(ident) if last == null else last
+	return soon if known == null else Util.most(soon, known.asked + Utterances.TOGETHER)
 
 
 # Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the plan before.

@@ -153,7 +153,8 @@ static func _closed(track, speeches, ident, now, cuts):
 			last.timing,
 			last.skip,
 			false,
-			now if silent else last.over
+			now if silent else last.over,
+			last.asked
 		)
 		end = Util.most(last.end, now)
 		break
@@ -188,7 +189,8 @@ static func pause(track, ident, made, stop, slot):
 				Items.cut(speech, stop).timing,
 				Items.cut(speech, stop).skip,
 				false,
-				Items.cut(speech, stop).over
+				Items.cut(speech, stop).over,
+				Items.cut(speech, stop).asked
 			))
 			var skip = stop - Items.find_line_start(speech)
 			held.append(Items.Speech.new(
@@ -202,7 +204,8 @@ static func pause(track, ident, made, stop, slot):
 				speech.timing,
 				skip,
 				speech.more,
-				speech.over
+				speech.over,
+				speech.asked
 			))
 		else:
 			held.append(Items.Speech.new(
@@ -216,11 +219,12 @@ static func pause(track, ident, made, stop, slot):
 				speech.timing,
 				speech.skip,
 				speech.more,
-				speech.over
+				speech.over,
+				speech.asked
 			))
 	var last = track.last_speech(ident)
 	if held.size() == 0 and last != null and last.more and last.start < PAUSED:
-		held.append(Items.Speech.new(ident, slot, slot, null, "", last.priority, null, null, 0.0, true))
+		held.append(Items.Speech.new(ident, slot, slot, null, "", last.priority, null, null, 0.0, true, null, last.asked))
 	if held.size() == 0:
 		return track
 	var moods = []
@@ -265,7 +269,8 @@ static func resume(track, ident, made, soon):
 				s.timing,
 				s.skip,
 				s.more,
-				s.over
+				s.over,
+				s.asked
 			))
 	var end = PAUSED if held[-1].more else held[-1].end + by
 	var moods = []
@@ -322,15 +327,8 @@ static func explain_end(speeches, speech):
 			first = s
 			break
 	var coming = first
-	if speech.more or (coming != null and is_same_utterance(speech, coming)):
+	if speech.more or (coming != null and coming.asked == speech.asked):
 		return ""
 	if speech.length == null:
 		return "finished"
 	return "interrupted" if (coming == null or coming.start > speech.end + TOGETHER) else "replaced"
-
-
-# Return whether a later piece of the same id continues an earlier one.
-static func is_same_utterance(one, other):
-	if one.more or (other.skip > 0 and one.length != null and one.over == null):
-		return true
-	return one.length == null and (other.start >= PAUSED or other.start - one.end < TOGETHER)
