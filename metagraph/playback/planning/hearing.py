@@ -239,8 +239,8 @@ def add_speeches(meant: Meaning, track: Track, soon: float) -> AddedSpeeches:
 
 
 def find_asked(track: Track, last: Speech | None, continues: bool, ident: str, soon: float) -> float:
-    """Return when the utterance of a new piece was asked for. last: the piece before it, None if that is taken
-    back; continues: whether the new one goes on from it.
+    """Return when the utterance of a new piece was asked for. last: the piece before it, None if that is
+    taken back; continues: whether the new one goes on from it.
     """
     if last is not None and continues:
         return last.asked
