@@ -73,7 +73,8 @@ def find_fault(project: Project, seed: int) -> str:
         talker.choose()
     talker.stop()
     wanted = Counter(ident for ident, _ in talker.begun)
-    left = [s for s in talker.character.plan.track.speeches if is_paused(s.start) or s.more]
+    track = talker.character.plan.track
+    left = [s for s in track.speeches if is_paused(s.start) or (s.more and track.last_speech(s.id) is s)]
     if talker.ends == wanted and not left:
         return ""
     return f"seed {seed}: {dict(talker.ends)} ends of {dict(wanted)}, left {left}, after {talker.steps}"

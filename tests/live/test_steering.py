@@ -385,3 +385,20 @@ def test_an_open_utterance_ends_when_its_id_says_something_later_instead(talk: T
     assert talk.ends("a") == ["finished"]
     talk.wait(6.0)
     assert talk.ends("a") == ["finished", "finished"]
+
+
+def test_an_utterance_that_waits_for_more_stays_open_when_it_is_paused_and_resumed_in_silence(
+    talk: Talk,
+) -> None:
+    talk.ask(do="say", id="a", text="Well", more=True)
+    talk.wait(2.0)
+    talk.ask(do="pause", what="a")
+    talk.wait(1.0)
+    talk.ask(do="resume", what="a")
+    talk.wait(1.0)
+    assert talk.ends("a") == []
+    more = talk.ask(do="say", id="a", text=" then.", more=True)
+    assert more["state"] == "planned" and more["since"] < 1.0
+    talk.ask(do="finish", what="a")
+    talk.wait(2.0)
+    assert talk.ends("a") == ["finished"]

@@ -159,7 +159,8 @@ def behind(said: Sequence[Speech], new: Speech, now: float) -> Speech:
         return new
     end = new.start
     for speech in said:
-        plain = speech.timing is None and speech.line is None and speech.length is None
+        paced = speech.timing is None or speech.timing.paced
+        plain = paced and speech.line is None and speech.length is None
         if speech.id == new.id and plain and speech.start <= end and end < speech.end:
             end = speech.end
     return new if end == new.start else replace(new, start=end, end=end + (new.end - new.start))

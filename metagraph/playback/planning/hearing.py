@@ -75,13 +75,14 @@ def heard(
     requests: Sequence[MetaRequest],
     track: Track,
     meant: Meaning,
+    present: float,
     now: float,
     soon: float,
     turning: Sequence[Layer],
 ) -> Heard:
     """Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may
-    overlap in it. now: everything that begins earlier stays; soon: the same for voices. turning: layers whose
-    models perform differently in different modes.
+    overlap in it. present: when they became known. now: everything that begins earlier stays; soon: the same
+    for voices. turning: layers whose models perform differently in different modes.
     """
     more = meant.track()
     gone = set(meant.withdrawn)
@@ -91,7 +92,7 @@ def heard(
         gone.add(request.id)
     for ident in more.idents():
         gone.add(ident)
-    words = add_speeches(meant, track, soon)
+    words = add_speeches(meant, track, present, soon)
     before = [r.id for r in requests]
     before += track.idents()
     # A client that takes everything back keeps the look at the user.
@@ -170,7 +171,7 @@ class AddedSpeeches:
         """Return the part of a track that stays: moods of speeches that continue last as long as these,
         unless another mood is requested.
         """
-        if len(self.on) == 0:
+        if len(self.on) == 0 and len(self.begun) == 0:
             return track
         other = {m.id for m in self.moods}
         ends: dict[str, float] = {}
@@ -189,9 +190,9 @@ class AddedSpeeches:
         )
 
 
-def add_speeches(meant: Meaning, track: Track, soon: float) -> AddedSpeeches:
+def add_speeches(meant: Meaning, track: Track, present: float, soon: float) -> AddedSpeeches:
     """Return the effect of asks to say something on a track: a new line, a line after another, or more of
-    one.
+    one. present: what ended by then is over, and its end was reported; more of it begins a new utterance.
     """
     said: list[Speech] = []
     begun: set[str] = set()
@@ -213,22 +214,28 @@ def add_speeches(meant: Meaning, track: Track, soon: float) -> AddedSpeeches:
         one = going_on(last, asked, now)
         continues = False
         if one is not asked and last is not None and one.start == last.start:
-            begun.add(one.id)
             continues = True
             said = [s for s in said if s.id != one.id or s.start < one.start]
             if last is before:
+                begun.add(one.id)
                 said.extend([s for s in track.speeches if s.id == one.id and s is not last])
-        elif one is asked and not taken:
-            one = behind([*track.speeches, *said], asked, now)
-            opens = last is not None and takes_more(last) and told.line is None and one.start <= now
-            continues = one is not asked or opens
-        if continues:
+        elif one is asked and last is not None:
+            same = [s for s in [*track.speeches, *said] if s.id == last.id and s.asked == last.asked]
+            one = behind(same, asked, now)
+            continues = one is not asked or (takes_more(last) and told.line is None and one.start <= now)
+        over = last is not None and last.end <= present and not takes_more(last)
+        since = find_asked(track, last, continues and not over, one.id, soon)
+        if not continues:  # it replaces what was asked for at the same time
+            said = [s for s in said if s.id != one.id]
+            begun = {x for x in begun if x != one.id}
+            on = {x for x in on if x != one.id}
+        if before is not None and since == before.asked:
             on.add(one.id)
         if one.start != told.start:
             later[one.id] = one.start - told.start
-        if one is asked and one.id not in on and track.last_speech(one.id) is not None:
+        if not continues and one.id not in on and track.last_speech(one.id) is not None:
             anew.add(one.id)
-        said.append(replace(one, asked=find_asked(track, last, continues, one.id, soon)))
+        said.append(replace(one, asked=since))
     opened = {s.id for s in said if s.more}
     moods: list[MoodFrom] = []
     for m in meant.moods:

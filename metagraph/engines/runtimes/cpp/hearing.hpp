@@ -29,11 +29,12 @@ inline Ref<Heard> heard(
     const List<Ref<MetaRequest>>& requests,
     const Ref<Track>& track,
     const Ref<Meaning>& meant,
+    double present,
     double now,
     double soon,
     const List<std::string>& turning
 );
-inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Track>& track, double soon);
+inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Track>& track, double present, double soon);
 inline double find_asked(
     const Ref<Track>& track,
     const Ref<Speech>& last,
@@ -146,7 +147,7 @@ struct SteeredSpeech {
 };
 
 inline Ref<Track> AddedSpeeches::leave(const Ref<Track>& track) const {
-    if (lang::len(this->on) == 0) {
+    if (lang::len(this->on) == 0 && lang::len(this->begun) == 0) {
         return track;
     }
     Set<std::string> other;
@@ -339,12 +340,13 @@ inline List<std::string> makers(const std::string& ident) {
 }
 
 /// Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it.
-/// now: everything that begins earlier stays; soon: the same for voices. turning: layers whose models perform
-/// differently in different modes.
+/// present: when they became known. now: everything that begins earlier stays; soon: the same for voices. turning:
+/// layers whose models perform differently in different modes.
 inline Ref<Heard> heard(
     const List<Ref<MetaRequest>>& requests,
     const Ref<Track>& track,
     const Ref<Meaning>& meant,
+    double present,
     double now,
     double soon,
     const List<std::string>& turning
@@ -360,7 +362,7 @@ inline Ref<Heard> heard(
     for (const auto& ident : more->idents()) {
         gone.insert(ident);
     }
-    Ref<AddedSpeeches> words = hearing::add_speeches(meant, track, soon);
+    Ref<AddedSpeeches> words = hearing::add_speeches(meant, track, present, soon);
     List<std::string> before;
     for (const auto& r : requests) {
         before.push_back(r->id);
@@ -537,8 +539,14 @@ inline Ref<Heard> heard(
     return hearing::_steer(requests, said, meant, now, soon);
 }
 
-/// Return the effect of asks to say something on a track: a new line, a line after another, or more of one.
-inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Track>& track, double soon) {
+/// Return the effect of asks to say something on a track: a new line, a line after another, or more of one. present:
+/// what ended by then is over, and its end was reported; more of it begins a new utterance.
+inline Ref<AddedSpeeches> add_speeches(
+    const Ref<Meaning>& meant,
+    const Ref<Track>& track,
+    double present,
+    double soon
+) {
     List<Ref<Speech>> said;
     Set<std::string> begun;
     Set<std::string> on;
@@ -581,7 +589,6 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
         Ref<Speech> one = items::going_on(last, asked, now);
         bool continues = false;
         if (one != asked && last != nullptr && one->start == last->start) {
-            begun.insert(one->id);
             continues = true;
             List<Ref<Speech>> found;
             for (const auto& s : said) {
@@ -591,6 +598,7 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
             }
             said = found;
             if (last == before) {
+                begun.insert(one->id);
                 List<Ref<Speech>> found2;
                 for (const auto& s : track->speeches) {
                     if (s->id == one->id && s != last) {
@@ -599,21 +607,48 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
                 }
                 lang::extend(said, found2);
             }
-        } else if (one == asked && !taken) {
-            one = items::behind(lang::together(track->speeches, said), asked, now);
-            bool opens = last != nullptr
-                && utterances::takes_more(last)
-                && !told->line.has_value()
-                && one->start <= now;
-            continues = one != asked || opens;
+        } else if (one == asked && last != nullptr) {
+            List<Ref<Speech>> same;
+            for (const auto& s : lang::together(track->speeches, said)) {
+                if (s->id == last->id && s->asked == last->asked) {
+                    same.push_back(s);
+                }
+            }
+            one = items::behind(same, asked, now);
+            continues = one != asked || (utterances::takes_more(last) && !told->line.has_value() && one->start <= now);
         }
-        if (continues) {
+        bool over = last != nullptr && last->end <= present && !utterances::takes_more(last);
+        double since = hearing::find_asked(track, last, continues && !over, one->id, soon);
+        if (!continues) { // it replaces what was asked for at the same time
+            List<Ref<Speech>> found3;
+            for (const auto& s : said) {
+                if (s->id != one->id) {
+                    found3.push_back(s);
+                }
+            }
+            said = found3;
+            Set<std::string> found4;
+            for (const auto& x : begun) {
+                if (x != one->id) {
+                    found4.insert(x);
+                }
+            }
+            begun = found4;
+            Set<std::string> found5;
+            for (const auto& x : on) {
+                if (x != one->id) {
+                    found5.insert(x);
+                }
+            }
+            on = found5;
+        }
+        if (before != nullptr && since == before->asked) {
             on.insert(one->id);
         }
         if (one->start != told->start) {
             later[one->id] = one->start - told->start;
         }
-        if (one == asked && !lang::contains(on, one->id) && track->last_speech(one->id) != nullptr) {
+        if (!continues && !lang::contains(on, one->id) && track->last_speech(one->id) != nullptr) {
             anew.insert(one->id);
         }
         said.push_back(lang::made<Speech>(
@@ -628,7 +663,7 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
             one->skip,
             one->more,
             one->over,
-            hearing::find_asked(track, last, continues, one->id, soon)
+            since
         ));
     }
     Set<std::string> opened;

@@ -249,7 +249,8 @@ inline Ref<Speech> behind(const List<Ref<Speech>>& said, const Ref<Speech>& new_
     }
     double end = new_->start;
     for (const auto& speech : said) {
-        bool plain = speech->timing == nullptr && !speech->line.has_value() && !speech->length.has_value();
+        bool paced = speech->timing == nullptr || speech->timing->paced;
+        bool plain = paced && !speech->line.has_value() && !speech->length.has_value();
         if (speech->id == new_->id && plain && speech->start <= end && end < speech->end) {
             end = speech->end;
         }

@@ -44,7 +44,7 @@ inline Ref<Track> finish_speech(const Ref<Track>& track, const std::string& iden
 inline Ref<Track> _closed(
     const Ref<Track>& track,
     const List<Ref<Speech>>& speeches,
-    const std::string& ident,
+    const Ref<Speech>& of,
     double now,
     bool cuts
 );
@@ -199,6 +199,7 @@ inline double find_slot(const Ref<Track>& track) {
 
 /// Return the track with an utterance ended at `stop`: its later pieces are not said.
 inline Ref<Track> break_off(const Ref<Track>& track, const std::string& ident, double stop) {
+    Ref<Speech> last = track->last_speech(ident);
     List<Ref<Speech>> speeches;
     for (const auto& speech : track->speeches) {
         if (speech->id != ident || speech->end <= stop) {
@@ -207,19 +208,21 @@ inline Ref<Track> break_off(const Ref<Track>& track, const std::string& ident, d
             speeches.push_back(items::cut(speech, stop));
         }
     }
-    return utterances::_closed(track, speeches, ident, stop, true);
+    return last == nullptr ? track : utterances::_closed(track, speeches, last, stop, true);
 }
 
 /// Return the track with an utterance that is over once all its known pieces are said.
 inline Ref<Track> finish_speech(const Ref<Track>& track, const std::string& ident, double soon) {
-    return utterances::_closed(track, track->speeches, ident, soon, false);
+    Ref<Speech> last = track->last_speech(ident);
+    return last == nullptr ? track : utterances::_closed(track, track->speeches, last, soon, false);
 }
 
-/// Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it was broken off.
+/// Return the track with these speeches, in which an utterance expects no more pieces. of: its last piece before. cuts:
+/// whether it was broken off.
 inline Ref<Track> _closed(
     const Ref<Track>& track,
     const List<Ref<Speech>>& speeches,
-    const std::string& ident,
+    const Ref<Speech>& of,
     double now,
     bool cuts
 ) {
@@ -227,7 +230,7 @@ inline Ref<Track> _closed(
     double end = now;
     for (const auto& n : lang::backwards(lang::range(lang::len(out)))) {
         Ref<Speech> last = lang::at(out, n);
-        if (last->id != ident) {
+        if (last->id != of->id || last->asked != of->asked) {
             continue;
         }
         bool held = cuts && last->length.has_value(); // it was paused
@@ -254,7 +257,7 @@ inline Ref<Track> _closed(
     }
     List<Ref<MoodFrom>> moods;
     for (const auto& m : track->moods) {
-        moods.push_back((m->id == ident && m->end == utterances::PAUSED) ? utterances::_until(m, end) : m);
+        moods.push_back((m->id == of->id && m->end == utterances::PAUSED) ? utterances::_until(m, end) : m);
     }
     return lang::made<Track>(track->looks, out, track->modes, track->places, track->blinks, track->stays, moods);
 }

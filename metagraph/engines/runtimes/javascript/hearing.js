@@ -80,18 +80,19 @@ export function makers(ident) {
 }
 
 /**
- * Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it. now:
- * everything that begins earlier stays; soon: the same for voices. turning: layers whose models perform differently in
- * different modes.
+ * Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it.
+ * present: when they became known. now: everything that begins earlier stays; soon: the same for voices. turning: layers
+ * whose models perform differently in different modes.
  * @param {MetaRequest[]} requests
  * @param {Track} track
  * @param {Meaning} meant
+ * @param {number} present
  * @param {number} now
  * @param {number} soon
  * @param {string[]} turning
  * @returns {Heard}
  */
-export function heard(requests, track, meant, now, soon, turning) {
+export function heard(requests, track, meant, present, now, soon, turning) {
   const more = meant.track();
   const gone = new Set(meant.withdrawn);
   for (const report of meant.refused) {
@@ -103,7 +104,7 @@ export function heard(requests, track, meant, now, soon, turning) {
   for (const ident of more.idents()) {
     gone.add(ident);
   }
-  const words = addSpeeches(meant, track, soon);
+  const words = addSpeeches(meant, track, present, soon);
   const before = requests.map((r) => r.id);
   before.push(...track.idents());
   // A client that takes everything back keeps the look at the user.
@@ -201,7 +202,7 @@ export class AddedSpeeches {
    * requested.
    */
   leave(track) {
-    if (this.on.size === 0) {
+    if (this.on.size === 0 && this.begun.size === 0) {
       return track;
     }
     const other = new Set(this.moods.map((m) => m.id));
@@ -225,16 +226,18 @@ export class AddedSpeeches {
 }
 
 /**
- * Return the effect of asks to say something on a track: a new line, a line after another, or more of one.
+ * Return the effect of asks to say something on a track: a new line, a line after another, or more of one. present: what
+ * ended by then is over, and its end was reported; more of it begins a new utterance.
  * @param {Meaning} meant
  * @param {Track} track
+ * @param {number} present
  * @param {number} soon
  * @returns {AddedSpeeches}
  */
-export function addSpeeches(meant, track, soon) {
+export function addSpeeches(meant, track, present, soon) {
   let said = [];
-  const begun = new Set([]);
-  const on = new Set([]);
+  let begun = new Set([]);
+  let on = new Set([]);
   const anew = new Set([]);
   const later = new Map(); // by how much those begin that are said behind others of their id
   for (const told of meant.speeches) {
@@ -254,27 +257,34 @@ export function addSpeeches(meant, track, soon) {
     let one = goingOn(last, asked, now);
     let continues = false;
     if (one !== asked && last !== null && one.start === last.start) {
-      begun.add(one.id);
       continues = true;
       said = said.filter((s) => s.id !== one.id || s.start < one.start);
       if (last === before) {
+        begun.add(one.id);
         said.push(...track.speeches.filter((s) => s.id === one.id && s !== last));
       }
-    } else if (one === asked && !taken) {
-      one = behind([...track.speeches, ...said], asked, now);
-      const opens = last !== null && takesMore(last) && told.line === null && one.start <= now;
-      continues = one !== asked || opens;
+    } else if (one === asked && last !== null) {
+      const same = [...track.speeches, ...said].filter((s) => s.id === last.id && s.asked === last.asked);
+      one = behind(same, asked, now);
+      continues = one !== asked || (takesMore(last) && told.line === null && one.start <= now);
     }
-    if (continues) {
+    const over = last !== null && last.end <= present && !takesMore(last);
+    const since = findAsked(track, last, continues && !over, one.id, soon);
+    if (!continues) { // it replaces what was asked for at the same time
+      said = said.filter((s) => s.id !== one.id);
+      begun = new Set(begun.filter((x) => x !== one.id));
+      on = new Set(on.filter((x) => x !== one.id));
+    }
+    if (before !== null && since === before.asked) {
       on.add(one.id);
     }
     if (one.start !== told.start) {
       later.set(one.id, one.start - told.start);
     }
-    if (one === asked && !on.has(one.id) && track.lastSpeech(one.id) !== null) {
+    if (!continues && !on.has(one.id) && track.lastSpeech(one.id) !== null) {
       anew.add(one.id);
     }
-    said.push(but(one, { asked: findAsked(track, last, continues, one.id, soon) }));
+    said.push(but(one, { asked: since }));
   }
   const opened = new Set(said.filter((s) => s.more).map((s) => s.id));
   const moods = [];

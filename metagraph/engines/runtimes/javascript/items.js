@@ -203,7 +203,8 @@ export function behind(said, new_, now) {
   }
   let end = new_.start;
   for (const speech of said) {
-    const plain = speech.timing === null && speech.line === null && speech.length === null;
+    const paced = speech.timing === null || speech.timing.paced;
+    const plain = paced && speech.line === null && speech.length === null;
     if (speech.id === new_.id && plain && speech.start <= end && end < speech.end) {
       end = speech.end;
     }

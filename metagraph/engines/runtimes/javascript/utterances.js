@@ -138,6 +138,7 @@ export function findSlot(track) {
  * @returns {Track}
  */
 export function breakOff(track, ident, stop) {
+  const last = track.lastSpeech(ident);
   const speeches = [];
   for (const speech of track.speeches) {
     if (speech.id !== ident || speech.end <= stop) {
@@ -146,7 +147,7 @@ export function breakOff(track, ident, stop) {
       speeches.push(cut(speech, stop));
     }
   }
-  return _closed(track, speeches, ident, stop, true);
+  return last === null ? track : _closed(track, speeches, last, stop, true);
 }
 
 /**
@@ -157,24 +158,26 @@ export function breakOff(track, ident, stop) {
  * @returns {Track}
  */
 export function finishSpeech(track, ident, soon) {
-  return _closed(track, [...track.speeches], ident, soon, false);
+  const last = track.lastSpeech(ident);
+  return last === null ? track : _closed(track, [...track.speeches], last, soon, false);
 }
 
 /**
- * Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it was broken off.
+ * Return the track with these speeches, in which an utterance expects no more pieces. of: its last piece before. cuts:
+ * whether it was broken off.
  * @param {Track} track
  * @param {Speech[]} speeches
- * @param {string} ident
+ * @param {Speech} of
  * @param {number} now
  * @param {boolean} cuts
  * @returns {Track}
  */
-function _closed(track, speeches, ident, now, cuts) {
+function _closed(track, speeches, of, now, cuts) {
   const out = [...speeches];
   let end = now;
   for (const n of [...range(out.length)].reverse()) {
     const last = out[n];
-    if (last.id !== ident) {
+    if (last.id !== of.id || last.asked !== of.asked) {
       continue;
     }
     const held = cuts && last.length !== null; // it was paused
@@ -184,7 +187,7 @@ function _closed(track, speeches, ident, now, cuts) {
     end = Math.max(last.end, now);
     break;
   }
-  const moods = track.moods.map((m) => (m.id === ident && m.end === PAUSED) ? _until(m, end) : m);
+  const moods = track.moods.map((m) => (m.id === of.id && m.end === PAUSED) ? _until(m, end) : m);
   return new Track(track.looks, [...out], track.modes, track.places, track.blinks, track.stays, [...moods]);
 }
 

@@ -68,7 +68,7 @@ namespace Metagraph
         /// </summary>
         public Track Leave(Track track)
         {
-            if (On.Count == 0)
+            if (On.Count == 0 && Begun.Count == 0)
             {
                 return track;
             }
@@ -306,13 +306,14 @@ namespace Metagraph
 
         /// <summary>
         /// Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it.
-        /// now: everything that begins earlier stays; soon: the same for voices. turning: layers whose models perform differently
-        /// in different modes.
+        /// present: when they became known. now: everything that begins earlier stays; soon: the same for voices. turning: layers
+        /// whose models perform differently in different modes.
         /// </summary>
         public static Heard Heard(
             List<MetaRequest> requests,
             Track track,
             Meaning meant,
+            double present,
             double now,
             double soon,
             List<string> turning
@@ -332,7 +333,7 @@ namespace Metagraph
             {
                 gone.Add(ident);
             }
-            var words = AddSpeeches(meant, track, soon);
+            var words = AddSpeeches(meant, track, present, soon);
             var before = requests.Select(r => r.Id).ToList();
             before.AddRange(track.Idents());
             // A client that takes everything back keeps the look at the user.
@@ -442,9 +443,10 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the effect of asks to say something on a track: a new line, a line after another, or more of one.
+        /// Return the effect of asks to say something on a track: a new line, a line after another, or more of one. present: what
+        /// ended by then is over, and its end was reported; more of it begins a new utterance.
         /// </summary>
-        public static AddedSpeeches AddSpeeches(Meaning meant, Track track, double soon)
+        public static AddedSpeeches AddSpeeches(Meaning meant, Track track, double present, double soon)
         {
             var said = new List<Speech>();
             var begun = new HashSet<string>();
@@ -485,21 +487,29 @@ namespace Metagraph
                 var continues = false;
                 if (one != asked && last != null && one.Start == last.Start)
                 {
-                    begun.Add(one.Id);
                     continues = true;
                     said = said.Where(s => s.Id != one.Id || s.Start < one.Start).ToList();
                     if (last == before)
                     {
+                        begun.Add(one.Id);
                         said.AddRange(track.Speeches.Where(s => s.Id == one.Id && s != last).ToList());
                     }
                 }
-                else if (one == asked && !taken)
+                else if (one == asked && last != null)
                 {
-                    one = ItemsRules.Behind(track.Speeches.Concat(said).ToList(), asked, now);
-                    var opens = last != null && UtterancesRules.TakesMore(last) && told.Line == null && one.Start <= now;
-                    continues = one != asked || opens;
+                    var same = track.Speeches.Concat(said).ToList().Where(s => s.Id == last.Id && s.Asked == last.Asked).ToList();
+                    one = ItemsRules.Behind(same, asked, now);
+                    continues = one != asked || (UtterancesRules.TakesMore(last) && told.Line == null && one.Start <= now);
                 }
-                if (continues)
+                var over = last != null && last.End <= present && !UtterancesRules.TakesMore(last);
+                var since = FindAsked(track, last, continues && !over, one.Id, soon);
+                if (!continues) // it replaces what was asked for at the same time
+                {
+                    said = said.Where(s => s.Id != one.Id).ToList();
+                    begun = new HashSet<string>(begun.Where(x => x != one.Id));
+                    on = new HashSet<string>(on.Where(x => x != one.Id));
+                }
+                if (before != null && since == before.Asked)
                 {
                     on.Add(one.Id);
                 }
@@ -507,7 +517,7 @@ namespace Metagraph
                 {
                     later[one.Id] = one.Start - told.Start;
                 }
-                if (one == asked && !on.Contains(one.Id) && track.LastSpeech(one.Id) != null)
+                if (!continues && !on.Contains(one.Id) && track.LastSpeech(one.Id) != null)
                 {
                     anew.Add(one.Id);
                 }
@@ -523,7 +533,7 @@ namespace Metagraph
                     one.Skip,
                     one.More,
                     one.Over,
-                    FindAsked(track, last, continues, one.Id, soon)
+                    since
                 ));
             }
             var opened = new HashSet<string>(said.Where(s => s.More).Select(s => s.Id));

@@ -250,7 +250,8 @@ namespace Metagraph
             var end = new_.Start;
             foreach (Speech speech in said)
             {
-                var plain = speech.Timing == null && speech.Line == null && speech.Length == null;
+                var paced = speech.Timing == null || speech.Timing.Paced;
+                var plain = paced && speech.Line == null && speech.Length == null;
                 if (speech.Id == new_.Id && plain && speech.Start <= end && end < speech.End)
                 {
                     end = speech.End;

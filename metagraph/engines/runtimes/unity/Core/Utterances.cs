@@ -122,6 +122,7 @@ namespace Metagraph
         /// <summary>Return the track with an utterance ended at `stop`: its later pieces are not said.</summary>
         public static Track BreakOff(Track track, string ident, double stop)
         {
+            var last = track.LastSpeech(ident);
             var speeches = new List<Speech>();
             foreach (Speech speech in track.Speeches)
             {
@@ -134,26 +135,28 @@ namespace Metagraph
                     speeches.Add(ItemsRules.Cut(speech, stop));
                 }
             }
-            return Closed(track, speeches, ident, stop, true);
+            return last == null ? track : Closed(track, speeches, last, stop, true);
         }
 
         /// <summary>Return the track with an utterance that is over once all its known pieces are said.</summary>
         public static Track FinishSpeech(Track track, string ident, double soon)
         {
-            return Closed(track, track.Speeches.ToList(), ident, soon, false);
+            var last = track.LastSpeech(ident);
+            return last == null ? track : Closed(track, track.Speeches.ToList(), last, soon, false);
         }
 
         /// <summary>
-        /// Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it was broken off.
+        /// Return the track with these speeches, in which an utterance expects no more pieces. of: its last piece before. cuts:
+        /// whether it was broken off.
         /// </summary>
-        private static Track Closed(Track track, List<Speech> speeches, string ident, double now, bool cuts)
+        private static Track Closed(Track track, List<Speech> speeches, Speech of, double now, bool cuts)
         {
             var out_ = speeches.ToList();
             var end = now;
             foreach (int n in PlainNumbers.Range(out_.Count).AsEnumerable().Reverse().ToList())
             {
                 var last = out_[n];
-                if (last.Id != ident)
+                if (last.Id != of.Id || last.Asked != of.Asked)
                 {
                     continue;
                 }
@@ -177,7 +180,7 @@ namespace Metagraph
                 end = Math.Max(last.End, now);
                 break;
             }
-            var moods = track.Moods.Select(m => (m.Id == ident && m.End == Paused) ? Until(m, end) : m).ToList();
+            var moods = track.Moods.Select(m => (m.Id == of.Id && m.End == Paused) ? Until(m, end) : m).ToList();
             return new Track(track.Looks, out_.ToList(), track.Modes, track.Places, track.Blinks, track.Stays, moods.ToList());
         }
 

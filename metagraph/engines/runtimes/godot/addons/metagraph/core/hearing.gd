@@ -60,10 +60,10 @@ static func makers(ident):
 	return out
 
 
-# Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it. now:
-# everything that begins earlier stays; soon: the same for voices. turning: layers whose models perform differently in different
-# modes.
-static func heard(requests, track, meant, now, soon, turning):
+# Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it. present:
+# when they became known. now: everything that begins earlier stays; soon: the same for voices. turning: layers whose models
+# perform differently in different modes.
+static func heard(requests, track, meant, present, now, soon, turning):
 	var more = meant.track()
 	var gone = Util.set_of(meant.withdrawn)
 	for report in meant.refused:
@@ -72,7 +72,7 @@ static func heard(requests, track, meant, now, soon, turning):
 		Util.add_to(gone, request.id)
 	for ident in more.idents():
 		Util.add_to(gone, ident)
-	var words = add_speeches(meant, track, soon)
+	var words = add_speeches(meant, track, present, soon)
 	var before = []
 	for r in requests:
 		before.append(r.id)
@@ -221,7 +221,7 @@ class AddedSpeeches:
 	# Return the part of a track that stays: moods of speeches that continue last as long as these, unless another mood is
 	# requested.
 	func leave(track):
-		if self.on.size() == 0:
+		if self.on.size() == 0 and self.begun.size() == 0:
 			return track
 		var other = {}
 		for m2 in self.moods:
@@ -251,8 +251,9 @@ class AddedSpeeches:
 		)
 
 
-# Return the effect of asks to say something on a track: a new line, a line after another, or more of one.
-static func add_speeches(meant, track, soon):
+# Return the effect of asks to say something on a track: a new line, a line after another, or more of one. present: what ended by
+# then is over, and its end was reported; more of it begins a new utterance.
+static func add_speeches(meant, track, present, soon):
 	var said = []
 	var begun = {}
 	var on = {}
@@ -291,7 +292,6 @@ static func add_speeches(meant, track, soon):
 		var one = Items.going_on(last, asked, now)
 		var continues = false
 		if one != asked and last != null and one.start == last.start:
-			Util.add_to(begun, one.id)
 			continues = true
 			var found = []
 			for s in said:
@@ -299,20 +299,42 @@ static func add_speeches(meant, track, soon):
 					found.append(s)
 			said = found
 			if last == before:
+				Util.add_to(begun, one.id)
 				var found2 = []
 				for s in track.speeches:
 					if s.id == one.id and s != last:
 						found2.append(s)
 				Util.extend(said, found2)
-		elif one == asked and not taken:
-			one = Items.behind(track.speeches + said, asked, now)
-			var opens = last != null and Utterances.takes_more(last) and told.line == null and one.start <= now
-			continues = one != asked or opens
-		if continues:
+		elif one == asked and last != null:
+			var same = []
+			for s in track.speeches + said:
+				if s.id == last.id and s.asked == last.asked:
+					same.append(s)
+			one = Items.behind(same, asked, now)
+			continues = one != asked or (Utterances.takes_more(last) and told.line == null and one.start <= now)
+		var over = last != null and last.end <= present and not Utterances.takes_more(last)
+		var since = find_asked(track, last, continues and not over, one.id, soon)
+		if not continues:  # it replaces what was asked for at the same time
+			var found3 = []
+			for s in said:
+				if s.id != one.id:
+					found3.append(s)
+			said = found3
+			var found4 = {}
+			for x in begun:
+				if x != one.id:
+					Util.add_to(found4, x)
+			begun = found4
+			var found5 = {}
+			for x in on:
+				if x != one.id:
+					Util.add_to(found5, x)
+			on = found5
+		if before != null and since == before.asked:
 			Util.add_to(on, one.id)
 		if one.start != told.start:
 			later[one.id] = one.start - told.start
-		if one == asked and not on.has(one.id) and track.last_speech(one.id) != null:
+		if not continues and not on.has(one.id) and track.last_speech(one.id) != null:
 			Util.add_to(anew, one.id)
 		said.append(Items.Speech.new(
 			one.id,
@@ -326,7 +348,7 @@ static func add_speeches(meant, track, soon):
 			one.skip,
 			one.more,
 			one.over,
-			find_asked(track, last, continues, one.id, soon)
+			since
 		))
 	var opened = {}
 	for s in said:

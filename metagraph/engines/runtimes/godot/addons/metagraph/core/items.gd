@@ -196,7 +196,8 @@ static func behind(said, new, now):
 		return new
 	var end = new.start
 	for speech in said:
-		var plain = speech.timing == null and speech.line == null and speech.length == null
+		var paced = speech.timing == null or speech.timing.paced
+		var plain = paced and speech.line == null and speech.length == null
 		if speech.id == new.id and plain and speech.start <= end and end < speech.end:
 			end = speech.end
 	return new if end == new.start else Speech.new(

@@ -117,27 +117,30 @@ static func find_slot(track):
 
 # Return the track with an utterance ended at `stop`: its later pieces are not said.
 static func break_off(track, ident, stop):
+	var last = track.last_speech(ident)
 	var speeches = []
 	for speech in track.speeches:
 		if speech.id != ident or speech.end <= stop:
 			speeches.append(speech)
 		elif speech.start < stop:
 			speeches.append(Items.cut(speech, stop))
-	return _closed(track, speeches, ident, stop, true)
+	return track if last == null else _closed(track, speeches, last, stop, true)
 
 
 # Return the track with an utterance that is over once all its known pieces are said.
 static func finish_speech(track, ident, soon):
-	return _closed(track, Util.list(track.speeches), ident, soon, false)
+	var last = track.last_speech(ident)
+	return track if last == null else _closed(track, Util.list(track.speeches), last, soon, false)
 
 
-# Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it was broken off.
-static func _closed(track, speeches, ident, now, cuts):
+# Return the track with these speeches, in which an utterance expects no more pieces. of: its last piece before. cuts: whether it
+# was broken off.
+static func _closed(track, speeches, of, now, cuts):
 	var out = Util.list(speeches)
 	var end = now
 	for n in Util.backwards(range(out.size())):
 		var last = out[n]
-		if last.id != ident:
+		if last.id != of.id or last.asked != of.asked:
 			continue
 		var held = cuts and last.length != null  # it was paused
 		var silent = last.end < now and (last.more or held)
@@ -160,7 +163,7 @@ static func _closed(track, speeches, ident, now, cuts):
 		break
 	var moods = []
 	for m in track.moods:
-		moods.append(_until(m, end) if (m.id == ident and m.end == PAUSED) else m)
+		moods.append(_until(m, end) if (m.id == of.id and m.end == PAUSED) else m)
 	return Track.Track.new(track.looks, Util.list(out), track.modes, track.places, track.blinks, track.stays, Util.list(moods))
 
 
