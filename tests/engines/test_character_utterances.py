@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import Counter
+from typing import Any
 
 import pytest
 
@@ -43,7 +44,7 @@ class Talker:
             self.steps.append(ticks)
             self.go(ticks)
             return
-        request: dict[str, object] = {"do": "say", "id": ident}
+        request: dict[str, Any] = {"do": "say", "id": ident}
         if kind == "steer":
             request = {"do": r.choice(STEERED)} | ({"what": ident} if r.random() < 0.7 else {})
         elif kind == "words":

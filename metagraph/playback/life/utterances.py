@@ -213,8 +213,10 @@ def explain_end(speeches: Sequence[Speech], speech: Speech) -> str:
     it is not over there.
     """
     coming = next((s for s in speeches if s.id == speech.id and s.start > speech.start), None)
-    if speech.more or (coming is not None and coming.asked == speech.asked):
+    if coming is not None and coming.asked == speech.asked:
         return ""
+    if speech.more:
+        return "" if coming is None else "replaced"
     if speech.length is None:
         return "finished"
     return "interrupted" if coming is None or coming.start > speech.end + TOGETHER else "replaced"

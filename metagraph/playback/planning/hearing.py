@@ -227,8 +227,8 @@ def add_speeches(meant: Meaning, track: Track, present: float, soon: float) -> A
         since = find_asked(track, last, continues and not over, one.id, soon)
         if not continues:  # it replaces what was asked for at the same time
             said = [s for s in said if s.id != one.id]
-            begun = {x for x in begun if x != one.id}
-            on = {x for x in on if x != one.id}
+            begun = _without(begun, one.id)
+            on = _without(on, one.id)
         if before is not None and since == before.asked:
             on.add(one.id)
         if one.start != told.start:
@@ -243,6 +243,14 @@ def add_speeches(meant: Meaning, track: Track, present: float, soon: float) -> A
         end = PAUSED if m.id in opened else m.end + by
         moods.append(MoodFrom(m.id, m.start + by, m.valence, m.arousal, m.intensity, end))
     return AddedSpeeches(said, begun, on, anew, moods)
+
+
+def _without(idents: AbstractSet[str], ident: str) -> set[str]:
+    left: set[str] = set()
+    for other in idents:
+        if other != ident:
+            left.add(other)
+    return left
 
 
 def find_asked(track: Track, last: Speech | None, continues: bool, ident: str, soon: float) -> float:

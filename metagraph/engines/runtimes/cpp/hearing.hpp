@@ -35,6 +35,7 @@ inline Ref<Heard> heard(
     const List<std::string>& turning
 );
 inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Track>& track, double present, double soon);
+inline Set<std::string> _without(const Set<std::string>& idents, const std::string& ident);
 inline double find_asked(
     const Ref<Track>& track,
     const Ref<Speech>& last,
@@ -627,20 +628,8 @@ inline Ref<AddedSpeeches> add_speeches(
                 }
             }
             said = found3;
-            Set<std::string> found4;
-            for (const auto& x : begun) {
-                if (x != one->id) {
-                    found4.insert(x);
-                }
-            }
-            begun = found4;
-            Set<std::string> found5;
-            for (const auto& x : on) {
-                if (x != one->id) {
-                    found5.insert(x);
-                }
-            }
-            on = found5;
+            begun = hearing::_without(begun, one->id);
+            on = hearing::_without(on, one->id);
         }
         if (before != nullptr && since == before->asked) {
             on.insert(one->id);
@@ -679,6 +668,16 @@ inline Ref<AddedSpeeches> add_speeches(
         moods.push_back(lang::made<MoodFrom>(m->id, m->start + by, m->valence, m->arousal, m->intensity, end));
     }
     return lang::made<AddedSpeeches>(said, begun, on, anew, moods);
+}
+
+inline Set<std::string> _without(const Set<std::string>& idents, const std::string& ident) {
+    Set<std::string> left;
+    for (const auto& other : idents) {
+        if (other != ident) {
+            left.insert(other);
+        }
+    }
+    return left;
 }
 
 /// Return when the utterance of a new piece was asked for. last: the piece before it, None if that is taken back;

@@ -513,8 +513,11 @@ inline std::string explain_end(const List<Ref<Speech>>& speeches, const Ref<Spee
         }
     }
     Ref<Speech> coming = first;
-    if (speech->more || (coming != nullptr && coming->asked == speech->asked)) {
+    if (coming != nullptr && coming->asked == speech->asked) {
         return "";
+    }
+    if (speech->more) {
+        return coming == nullptr ? std::string("") : std::string("replaced");
     }
     if (!speech->length.has_value()) {
         return "finished";

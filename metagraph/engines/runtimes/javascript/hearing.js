@@ -272,8 +272,8 @@ export function addSpeeches(meant, track, present, soon) {
     const since = findAsked(track, last, continues && !over, one.id, soon);
     if (!continues) { // it replaces what was asked for at the same time
       said = said.filter((s) => s.id !== one.id);
-      begun = new Set(begun.filter((x) => x !== one.id));
-      on = new Set(on.filter((x) => x !== one.id));
+      begun = _without(begun, one.id);
+      on = _without(on, one.id);
     }
     if (before !== null && since === before.asked) {
       on.add(one.id);
@@ -294,6 +294,21 @@ export function addSpeeches(meant, track, present, soon) {
     moods.push(new MoodFrom(m.id, m.start + by, m.valence, m.arousal, m.intensity, end));
   }
   return new AddedSpeeches(said, begun, on, anew, moods);
+}
+
+/**
+ * @param {Set<string>} idents
+ * @param {string} ident
+ * @returns {Set<string>}
+ */
+function _without(idents, ident) {
+  const left = new Set([]);
+  for (const other of idents) {
+    if (other !== ident) {
+      left.add(other);
+    }
+  }
+  return left;
 }
 
 /**

@@ -309,8 +309,11 @@ function _moved(track, speeches, made, low, high, by) {
  */
 export function explainEnd(speeches, speech) {
   const coming = speeches.find((s) => s.id === speech.id && s.start > speech.start) ?? null;
-  if (speech.more || (coming !== null && coming.asked === speech.asked)) {
+  if (coming !== null && coming.asked === speech.asked) {
     return "";
+  }
+  if (speech.more) {
+    return coming === null ? "" : "replaced";
   }
   if (speech.length === null) {
     return "finished";

@@ -506,8 +506,8 @@ namespace Metagraph
                 if (!continues) // it replaces what was asked for at the same time
                 {
                     said = said.Where(s => s.Id != one.Id).ToList();
-                    begun = new HashSet<string>(begun.Where(x => x != one.Id));
-                    on = new HashSet<string>(on.Where(x => x != one.Id));
+                    begun = Without(begun, one.Id);
+                    on = Without(on, one.Id);
                 }
                 if (before != null && since == before.Asked)
                 {
@@ -545,6 +545,19 @@ namespace Metagraph
                 moods.Add(new MoodFrom(m.Id, m.Start + by, m.Valence, m.Arousal, m.Intensity, end));
             }
             return new AddedSpeeches(said, begun, on, anew, moods);
+        }
+
+        private static HashSet<string> Without(HashSet<string> idents, string ident)
+        {
+            var left = new HashSet<string>();
+            foreach (string other in idents)
+            {
+                if (other != ident)
+                {
+                    left.Add(other);
+                }
+            }
+            return left;
         }
 
         /// <summary>

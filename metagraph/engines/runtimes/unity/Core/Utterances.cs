@@ -373,9 +373,13 @@ namespace Metagraph
         public static string ExplainEnd(List<Speech> speeches, Speech speech)
         {
             var coming = speeches.Where(s => s.Id == speech.Id && s.Start > speech.Start).FirstOrDefault();
-            if (speech.More || (coming != null && coming.Asked == speech.Asked))
+            if (coming != null && coming.Asked == speech.Asked)
             {
                 return "";
+            }
+            if (speech.More)
+            {
+                return coming == null ? "" : "replaced";
             }
             if (speech.Length == null)
             {

@@ -320,16 +320,8 @@ static func add_speeches(meant, track, present, soon):
 				if s.id != one.id:
 					found3.append(s)
 			said = found3
-			var found4 = {}
-			for x in begun:
-				if x != one.id:
-					Util.add_to(found4, x)
-			begun = found4
-			var found5 = {}
-			for x in on:
-				if x != one.id:
-					Util.add_to(found5, x)
-			on = found5
+			begun = _without(begun, one.id)
+			on = _without(on, one.id)
 		if before != null and since == before.asked:
 			Util.add_to(on, one.id)
 		if one.start != told.start:
@@ -360,6 +352,14 @@ static func add_speeches(meant, track, present, soon):
 		var end = Utterances.PAUSED if opened.has(m.id) else m.end + by
 		moods.append(Mood.MoodFrom.new(m.id, m.start + by, m.valence, m.arousal, m.intensity, end))
 	return AddedSpeeches.new(said, begun, on, anew, moods)
+
+
+static func _without(idents, ident):
+	var left = {}
+	for other in idents:
+		if other != ident:
+			Util.add_to(left, other)
+	return left
 
 
 # Return when the utterance of a new piece was asked for. last: the piece before it, None if that is taken back; continues:

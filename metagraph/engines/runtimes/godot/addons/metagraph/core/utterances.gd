@@ -330,8 +330,10 @@ static func explain_end(speeches, speech):
 			first = s
 			break
 	var coming = first
-	if speech.more or (coming != null and coming.asked == speech.asked):
+	if coming != null and coming.asked == speech.asked:
 		return ""
+	if speech.more:
+		return "" if coming == null else "replaced"
 	if speech.length == null:
 		return "finished"
 	return "interrupted" if (coming == null or coming.start > speech.end + TOGETHER) else "replaced"
