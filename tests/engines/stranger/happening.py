@@ -111,8 +111,8 @@ class Happening:
         for ask in self.asks["say"]:
             voice, line = data["voices"][ask["line"]], data["lines"][ask["line"]]
             start = ask.get("at") or 0.0
-            seconds = line.get("duration") or voice["duration"]
-            out.append(Said(ask["id"], start, start + seconds, voice["accents"], line.get("text", "")))
+            end = start + voice["duration"]
+            out.append(Said(ask["id"], start, end, voice["accents"], line.get("text", "")))
         return out
 
     def wanted_mode(self, t: float) -> str | None:
