@@ -25,7 +25,7 @@ milliseconds, microseconds, nanoseconds, or ticks of 100 nanoseconds.
 """
 CLIPS = """
 [Bring your clips](../animators/bring-clips.md) says what the import repairs. [Keypoints of a
-person](../agents/camera-keypoints.md) says how keypoints become stances or a take; TRC and C3D are read there too.
+person](../agents/camera-keypoints.md) says how keypoints become stances; TRC and C3D are read there too.
 """
 
 
