@@ -69,7 +69,7 @@ def median(work: Callable[[], Any]) -> float:
 
 def main() -> None:
     print(
-        "| actions | stances | connections implied | JSON | JSON an action | with the machine listed | ratio "
+        "| actions | stances | implied connections | JSON | JSON per action | with the machine listed | ratio "
         "| writing | reading |"
     )
     print("|---|---|---|---|---|---|---|---|---|")
