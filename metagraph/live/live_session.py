@@ -611,12 +611,11 @@ class LiveSession:
     def _goes_on_from(self, open_: Open) -> bool:
         """Return whether what is said goes on from what was said last under its id."""
         speech, before = self.plan.track.last_speech(open_.key), open_.adds
-        return (
-            speech is not None
-            and before is not None
-            and speech is not before
-            and speech.asked == before.asked
-        )
+        if speech is None or before is None or speech is before:
+            return False
+        told = speech.timing is not None and before.timing is not None
+        # Words that come when all was said go on with it, as an utterance of their own.
+        return speech.asked == before.asked or (told and speech.start == before.start)
 
     def _end_replaced(self, open_: Open) -> None:
         """Report that what waited under an id has ended, if something else has taken its place; so have the
