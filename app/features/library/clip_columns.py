@@ -110,7 +110,7 @@ COLUMNS: tuple[Column, ...] = make_lazy_texts(
         ),
         Column(
             "color",
-            tr("Label"),
+            tr("Colour"),
             lambda f, e: COLOR_TITLES[f.mark(e).color],
             "color",
             80,
