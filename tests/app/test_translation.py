@@ -138,7 +138,7 @@ def test_what_checks_find_is_said_in_the_language_and_stays_english_for_programs
     (found,) = [p for p in check_project(project) if p.code == "likelihood"]
     assert tr_phrase(found.message) == found.message == "'rest beat lf' has likelihood -1 and never plays"
     translation.choose("de")
-    assert tr_phrase(found.message) == "„rest beat lf“ hat die Häufigkeit -1 und spielt nie"
+    assert tr_phrase(found.message) == "„rest beat lf“ hat die Häufigkeit -1 und wird nie abgespielt"
     assert tr_phrase(found.remedy) == "Setzen Sie den Wert auf mehr als 0."
     assert found.message == "'rest beat lf' has likelihood -1 and never plays"
 
@@ -185,7 +185,7 @@ def test_what_targets_write_and_lose_is_said_in_the_language(english: None) -> N
     (counted,) = [loss for loss in registry.get_target("scxml").losses if "blend their seam" in loss.words]
     loops = replace(counted, count=lambda project: 3).told(Project())
     assert loops == "3 loops blend their seam here but jump at the seam there"
-    assert tr_phrase(loops) == "3 Schleifen blenden hier ihre Naht, springen dort aber an ihr"
+    assert tr_phrase(loops) == "3 Schleifen werden hier an ihrer Naht überblendet, springen dort aber"
 
 
 def without_words(said: str, known: Collection[str]) -> Iterator[str]:
