@@ -45,7 +45,7 @@ from metagraph.common.extras import (
 )
 
 HEADS = make_lazy_texts(
-    lambda: (tr("Extra"), tr("For"), tr("Download"), tr("On disk"), tr("Licence"), tr("State"))
+    lambda: (tr("Extra"), tr("For"), tr("Download"), tr("On disk"), tr("Licence"), tr("Status"))
 )
 STEPS = 1000  # of the progress bar
 
