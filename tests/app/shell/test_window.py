@@ -815,3 +815,14 @@ def test_where_the_header_is_narrow_a_dot_says_unsaved_and_no_part_is_pressed_to
     drive.window.resize(1680, 1020)
     drive.settle()
     assert "unsaved" in header.name.text()
+
+
+def test_undo_names_what_it_undoes_and_stands_alone_where_there_is_nothing(drive, sample):
+    drive.document.load(edits.update_each(sample, {}), None)
+    drive.files.opened.emit()
+    drive.settle()
+    assert drive.actions["undo"].text() == "&Undo"
+    clip = next(iter(drive.document.project.clips))
+    drive.document.edit("Rename clip", lambda p: edits.rename_clip(p, clip, "another"))
+    drive.settle()
+    assert drive.actions["undo"].text() == "&Undo Rename clip"
