@@ -70,9 +70,14 @@ def main(arguments):
     if testing:
         return prepare_and_test(arguments[1:])
     # In the folder it was called from, which paths are relative to; no module is taken from there (-P).
-    return environment(0) or subprocess.call(
-        [str(PYTHON), "-P", "-m", "app.cli", *(arguments or (["window", "--sample"] if screen else ["demo"]))]
-    )
+    problem = environment(0)
+    if problem is None and not arguments and not screen:
+        print(
+            "There is no screen (DISPLAY is not set), so no window opens: the same is done without one.",
+            flush=True,
+        )
+    words = arguments or (["window", "--sample"] if screen else ["demo"])
+    return problem or subprocess.call([str(PYTHON), "-P", "-m", "app.cli", *words])
 
 
 # --- system libraries

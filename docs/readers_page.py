@@ -24,8 +24,8 @@ Where a file does not name its unit of time, the length of the sound tells it: s
 milliseconds, microseconds, nanoseconds, or ticks of 100 nanoseconds.
 """
 CLIPS = """
-[Bring your clips](../animators/bring-clips.md) says what the import repairs. [Following a
-camera](../agents/camera.md) says how keypoints become stances or a take; TRC and C3D are read there too.
+[Bring your clips](../animators/bring-clips.md) says what the import repairs. [Keypoints of a
+person](../agents/camera-keypoints.md) says how keypoints become stances; TRC and C3D are read there too.
 """
 
 

@@ -309,7 +309,14 @@ def test_the_readme_shows_the_window_and_the_pictures_are_pictures() -> None:
 
 def test_every_field_of_the_schema_is_described() -> None:
     schema = json.loads((ROOT / "metagraph" / "engines" / "metagraph.schema.json").read_bytes())
-    pages = ("reference/export", "reference/export-rigs", "agents/requests", "agents/moods", "agents/speech")
+    pages = (
+        "reference/export",
+        "reference/export-layers",
+        "reference/export-rigs",
+        "agents/requests",
+        "agents/moods",
+        "agents/speech",
+    )
     export = "".join((ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8") for page in pages)
     fields = {name for part in schema["$defs"].values() for name in part["properties"]}
     assert not {f for f in fields if not re.search(rf"`{f}[\[`]", export)}
@@ -339,7 +346,7 @@ def test_every_field_of_a_perceptual_study_is_described() -> None:
 def test_every_field_of_a_project_file_is_described() -> None:
     from metagraph.formats.project import data
 
-    pages = ("project-file", "export")  # actions have the export's fields
+    pages = ("project-file", "export", "export-layers")  # actions have the export's fields
     text = "".join((ROOT / "docs" / "reference" / f"{p}.md").read_text(encoding="utf-8") for p in pages)
     fields = data._PROJECT_FIELDS | data._CLIP_FIELDS | data._ACTION_FIELDS
     assert not {f for f in fields if not re.search(rf"(`{f}`|^{f}:|[{{ ]{f}: )", text, re.M)}

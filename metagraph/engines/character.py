@@ -28,8 +28,9 @@ from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.items import find_line_start
 from metagraph.playback.life.line_timing import VisemeMark
+from metagraph.playback.life.speech_watch import SpeechWatch
 from metagraph.playback.life.streamed_voice import StreamedVoice
-from metagraph.playback.life.utterances import explain_end, find_forgotten, find_soon
+from metagraph.playback.life.utterances import find_forgotten, find_soon
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import AskAnswer, answer_ask, answer_asks
 from metagraph.playback.planning.running_plan import CUT, RunningPlan
@@ -83,6 +84,7 @@ class Character:
         self._settled: dict[str, AskAnswer] = {}  # answers for those it has forgotten or never knew
         self._happened: list[Happening] = []
         self._sounds: dict[str, StreamedVoice] = {}  # the sounds of lines that stream in
+        self._speech = SpeechWatch()
         self._count = 0
         self._cut = 0.0
         self._seen = -inf  # the time of the previous update
@@ -230,34 +232,16 @@ class Character:
         """Note what has begun or ended since the previous update."""
         found: list[Happening] = []
 
-        def note(
-            start: float,
-            end: float,
-            layer: Layer | Literal["speech"],
-            action: str,
-            meta: str,
-            reason: str = "",
-        ) -> None:
-            if self._seen < start <= self.now:
-                found.append(Happening("begin", start, layer, action, meta))
-            if self._seen < end <= self.now:
-                found.append(Happening("end", end, layer, action, meta, reason))
-
         for layer in LAYERS:
             for cue in self.plan.layers[layer].cues:
-                note(
-                    cue.start, cue.end, layer, cue.action.name, cue.meta.partition("+")[0]
-                )  # what goes on after a cut is the same
-        speeches = self.plan.track.speeches
-        for speech in speeches:
-            last = speech.end if speech.over is None else max(speech.end, speech.over)
-            if last <= self._seen or speech.start > self.now:
-                continue
-            reason = "" if speech.end > self.now else explain_end(speeches, speech)
-            said = speech.line or speech.text
-            note(speech.start, speech.end, "speech", said, speech.id, reason if speech.over is None else "")
-            if speech.over is not None and self._seen < speech.over <= self.now:
-                found.append(Happening("end", speech.over, "speech", said, speech.id, reason))
+                meta = cue.meta.partition("+")[0]  # what goes on after a cut is the same
+                if self._seen < cue.start <= self.now:
+                    found.append(Happening("begin", cue.start, layer, cue.action.name, meta))
+                if self._seen < cue.end <= self.now:
+                    found.append(Happening("end", cue.end, layer, cue.action.name, meta))
+        for e in self._speech.watch(self.plan.track.speeches, self._seen, self.now):
+            kind: Literal["begin", "end"] = "begin" if e.kind == "begin" else "end"
+            found.append(Happening(kind, e.at, "speech", e.said, e.id, e.reason))
         self._seen = self.now
         if found:
             self._happened = [*self._happened, *sorted(found, key=lambda event: event.at)][-REMEMBERED:]

@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from math import inf
 
-from metagraph.playback.life.track import Item, LookAt, MoodFrom, Speech
+from metagraph.playback.life.track import Item, LookAt, MoodFrom
 from metagraph.playback.life.utterances import is_paused
 from metagraph.playback.plan import MetaAction, Plan, Report
 from metagraph.playback.planning.extend_performance import find_item_end, find_served, name_item
@@ -153,5 +153,6 @@ def _near(plan: Plan, since: float) -> Iterator[Item]:
                 break
             yield item
     latest = {speech.id: speech for speech in track.speeches}  # an earlier one of the id was cut short
-    lasting: tuple[LookAt | Speech | MoodFrom, ...] = (*track.looks, *latest.values(), *track.moods)
+    yield from (s for s in latest.values() if s.end >= since or s.more)
+    lasting: tuple[LookAt | MoodFrom, ...] = (*track.looks, *track.moods)
     yield from (x for x in lasting if x.end >= since)

@@ -4,7 +4,7 @@ ends once, whatever becomes of it.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
@@ -15,16 +15,14 @@ from metagraph.live.ledger import Ledger, OpenAsk, reword_for_client
 from metagraph.live.limits import ADDED
 from metagraph.live.messages import Event, Reason, round_seconds
 from metagraph.playback.life.alphabet import ALPHABET
-from metagraph.playback.life.items import find_line_start
 from metagraph.playback.life.track import Speech
-from metagraph.playback.life.utterances import is_paused, is_same_utterance
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planning.extend_performance import find_served
 from metagraph.speech.spoken_so_far import spoken_until
 
-LONGEST = 60.0  # seconds a speech is looked back for
-TOLD: tuple[str, ...] = (*LAYERS, "say", ADDED)  # of which it is told when they begin and end
+SAID = ("say", ADDED)  # the lanes of what is said
 Word = Literal["started", "ended"]
+UNSAID = "something else is said then"
 WHY: dict[Reason, str] = {"withdrawn": "taken back", "replaced": "asked again under the same id"}
 
 
@@ -40,19 +38,30 @@ class Listener(Protocol):
 
 @dataclass(slots=True)
 class Running:
-    """A request of a client that has started and not ended. owner, ident: whose it is, and what that one
-    calls it. request: of the plan, that plays it. layer: None for speech. start: of what plays, seconds.
-    since: when the first piece of it began. reason: why it ends, None as long as nothing but its own
-    end is known; why: in words, if that is given.
+    """A request for an action that has started and not ended. owner, ident: whose it is, and what that one
+    calls it. request: of the plan, that plays it. start: of what plays, seconds. reason: why it ends, None as
+    long as nothing but its own end is known; why: in words, if that is given.
     """
 
     owner: int
     ident: str
     request: str
-    layer: Layer | None
+    layer: Layer
     event: Event
     start: float
-    since: float
+    reason: Reason | None = None
+    why: str = ""
+
+
+@dataclass(slots=True)
+class Utterance:
+    """Something that a client was promised will be said, and whose end has not been reported. owner, ident,
+    reason, why: as for `Running`. since: when its first piece began, None before that.
+    """
+
+    owner: int
+    ident: str
+    since: float | None = None
     reason: Reason | None = None
     why: str = ""
 
@@ -70,53 +79,63 @@ class Leaving:
 
 
 class Happenings:
-    """What runs, by the requests of the plan."""
+    """What runs, by the requests of the plan. utterances: by request and by when they were asked for."""
 
     def __init__(self) -> None:
         self.running: dict[str, Running] = {}
+        self.utterances: dict[tuple[str, float], Utterance] = {}
         self._leaving: dict[str, Leaving] = {}
         self._followed = 0.0  # seconds; what began by then runs
         self._told: list[tuple[int | None, str | None, Event]] = []  # whose, called what, which
 
     def stop(self, request: str, reason: Reason, why: str = "") -> None:
         """Take note why a request ends."""
+        ending: list[Running | Utterance] = [
+            one for (said, _), one in self.utterances.items() if said == request
+        ]
         if request in self.running:
-            self.running[request].reason, self.running[request].why = reason, why
+            ending.append(self.running[request])
+        for one in ending:
+            one.reason, one.why = reason, why
+
+    def promise(self, request: str, owner: int, ident: str, plan: Plan) -> None:
+        """Take note that something will be said, so that its end is reported."""
+        speech = plan.track.last_speech(request)
+        if speech is not None:
+            self.utterances.setdefault((request, speech.asked), Utterance(owner, ident))
+
+    def find_beginning(self, speech: Speech) -> float | None:
+        """Return when the utterance of a piece began, in seconds; None if it has not."""
+        one = self.utterances.get((speech.id, speech.asked))
+        return None if one is None else one.since
 
     def owes_end(self, request: str) -> bool:
-        """Whether it is still to be told that a request has ended, which runs or begins because it is too
-        late to change that.
+        """Whether the end of a request is still to be reported: it was promised to be said, it runs, or it
+        begins because it is too late to change that.
         """
-        return request in self.running or request in self._leaving
+        said = any(name == request for name, _ in self.utterances)
+        return said or request in self.running or request in self._leaving
 
     def list_lasting(self) -> list[str]:
         """Return the requests that run and are not known to end."""
-        return [request for request, one in self.running.items() if one.reason is None]
+        said = [name for (name, _), x in self.utterances.items() if x.since is not None and x.reason is None]
+        return [*said, *(request for request, one in self.running.items() if one.reason is None)]
 
     def end_waiting(
         self, key: str, ask: OpenAsk, reason: Reason, why: str, now: float, plan: Plan, fixed: float
     ) -> None:
-        """Report that something ends which was promised and never began; what begins before `fixed` seconds
+        """Report that an action ends which was promised and never began; what begins before `fixed` seconds
         cannot be stopped, and ends a moment later.
         """
-        taken = reason in ("withdrawn", "interrupted")  # which is known before it is planned
-        runs = self._runs(key, ask, plan) if taken else key in self.running
-        if not ask.settled or ask.ended or runs or ask.lane not in TOLD:
+        layer = next((x for x in LAYERS if x == ask.lane), None)
+        if not ask.settled or ask.ended or key in self.running or layer is None:
             return
         ask.ended = True
-        layer = next((x for x in LAYERS if x == ask.lane), None)
         event = Event(event="ended", t=round_seconds(now), layer=layer, reason=reason, why=why)
         if _begins(plan, key, layer, self._followed, fixed):
             self._leaving[key] = Leaving(ask.client, ask.ident, fixed, event)
         else:
             self._tell(ask.client, ask.ident, event)
-
-    def _runs(self, key: str, ask: OpenAsk, plan: Plan) -> bool:
-        """Whether an ask runs, and not only what was said under its id before it."""
-        one = self.running.get(key)
-        if one is None or one.layer is not None or not one.start < ask.at or ask.at <= self._followed:
-            return one is not None
-        return any(abs(piece.start - ask.at) < 1e-6 for piece in _list_pieces(plan, one, True))
 
     def list_happenings(
         self, plan: Plan, ledger: Ledger, before: float, now: float, clients: Collection[Listener]
@@ -147,19 +166,57 @@ class Happenings:
                 event = _event_of(cue, layer, "started", t)
                 for each in (request, *served.get(cue.meta, ())):
                     self._start(each, request, layer, cue.start, event, plan, ledger, now)
-        for speech in plan.track.speeches:
-            if speech.end < before - LONGEST:
-                continue
-            crosses = before < speech.start <= now
-            runs = speech.start <= now < speech.end and speech.id not in self.running
-            if crosses or (runs and ledger.owner(speech.id) is not None):
-                event = _event_of_speech(speech, "started", t)
-                self._start(speech.id, speech.id, None, speech.start, event, plan, ledger, now)
+        self._follow_speech(plan, ledger, before, now)
         for request in [x for x, late in self._leaving.items() if late.until < now]:
             late = self._leaving.pop(request)  # it was held up after all
             self._tell(late.owner, late.ident, late.event)
         for request in [x for x, one in self.running.items() if not _lasts(plan, one, now)]:
             self._end(request, plan, ledger, now)
+
+    def _follow_speech(self, plan: Plan, ledger: Ledger, before: float, now: float) -> None:
+        t, track = round_seconds(now), plan.track
+        pieces: dict[tuple[str, float], list[Speech]] = {key: [] for key in self.utterances}
+        for speech in track.speeches:
+            key = (speech.id, speech.asked)
+            one = self.utterances.get(key)
+            if one is not None:
+                pieces[key].append(speech)
+            begins_late = one is not None and one.since is None and speech.start <= now < speech.end
+            if before < speech.start <= now or begins_late:
+                event = _event_of_speech(speech, "started", t)
+                self._tell(None if one is None else one.owner, None if one is None else one.ident, event)
+                if one is not None and one.since is None:
+                    one.since = speech.start
+        for key, said in pieces.items():
+            last = said[-1] if said else None
+            awaits = last is not None and last.more and self.utterances[key].reason is None
+            if last is None or not (last.end > now or (awaits and track.last_speech(key[0]) is last)):
+                self._end_utterance(key, last, plan, ledger, now)
+
+    def _end_utterance(
+        self, key: tuple[str, float], last: Speech | None, plan: Plan, ledger: Ledger, now: float
+    ) -> None:
+        """Report that an utterance has ended, and why. last: its last piece, None if none is left."""
+        one, request = self.utterances.pop(key), key[0]
+        others = any(name == request for name, _ in self.utterances)
+        ask = ledger.known.get(request)
+        if ask is not None and ask.lane in SAID and not others:
+            ask.ended = True
+        reason, why, spoken, word, at = one.reason, "", None, None, None
+        if last is None:
+            reason = reason or ("replaced" if others else "dropped")
+            why, event = UNSAID, Event(event="ended", t=round_seconds(now))
+        else:
+            event = _event_of_speech(last, "ended", round_seconds(now))
+            at = None if one.since is None else round_seconds(one.since)
+            if last.length is not None:
+                spoken, word = spoken_until(ALPHABET, plan.track.speeches, request, last.end)
+                reason = reason or ("replaced" if _said_again(plan, last) else "interrupted")
+                why = "something else is said"
+        reason = reason or "finished"
+        why = one.why or WHY.get(reason, why)
+        event = replace(event, at=at, reason=reason, why=why, spoken=spoken, last_word=word)
+        self._tell(one.owner, one.ident, event)
 
     def _tell(self, owner: int | None, ident: str | None, event: Event) -> None:
         self._told.append((owner, ident, event))
@@ -168,7 +225,7 @@ class Happenings:
         self,
         request: str,
         played: str,
-        layer: Layer | None,
+        layer: Layer,
         start: float,
         event: Event,
         plan: Plan,
@@ -176,8 +233,7 @@ class Happenings:
         now: float,
     ) -> None:
         before = self.running.get(request)
-        goes_on = before is not None and any(s.start == start for s in _list_pieces(plan, before))
-        if before is not None and not goes_on and not _lasts(plan, before, now):
+        if before is not None and not _lasts(plan, before, now):
             self._end(request, plan, ledger, now)
             before = None
         owner = ledger.owner(request)
@@ -185,9 +241,7 @@ class Happenings:
         if leaving is not None:
             self._tell(leaving.owner, leaving.ident, event)
             reason = leaving.event.reason
-            self.running[request] = Running(
-                leaving.owner, leaving.ident, played, layer, event, start, start, reason
-            )
+            self.running[request] = Running(leaving.owner, leaving.ident, played, layer, event, start, reason)
             return
         if owner is None and before is None:
             if request == played:
@@ -199,52 +253,29 @@ class Happenings:
             ask = ledger.known[str(owner)]
             whose, ident = ask.client, ask.ident + request.removeprefix(str(owner))
         self._tell(whose, ident, event)
-        since = start if before is None else before.since
-        self.running[request] = Running(whose, ident, played, layer, event, start, since)
+        self.running[request] = Running(whose, ident, played, layer, event, start)
 
     def _end(self, request: str, plan: Plan, ledger: Ledger, now: float) -> None:
         """Report that a request that ran has ended, and why."""
         one = self.running.pop(request)
-        reason, why, spoken, word = one.reason, "", None, None
+        reason, why = one.reason, ""
         event = replace(one.event, event="ended", t=round_seconds(now))
-        speech = next((s for s in plan.track.speeches if s.id == request and s.start == one.start), None)
         cue = _cue_of(plan, one)
-        if speech is not None:
-            event = replace(_event_of_speech(speech, "ended", event.t), at=round_seconds(one.since))
-            if speech.length is not None:
-                spoken, word = spoken_until(ALPHABET, plan.track.speeches, speech.id, speech.end)
-                reason = reason or ("replaced" if _said_again(plan, speech) else "interrupted")
-                why = one.why or WHY.get(reason, "something else is said")
-        elif cue is not None and one.layer is not None:
+        if cue is not None:
             event = _event_of(cue, one.layer, "ended", event.t)
             cuts = [r for r in plan.reports if r.request == request and r.outcome in ("cut", "covered")]
             if reason is None and cuts:
                 reason, why = "interrupted", reword_for_client(cuts[-1].message, one.owner)
         reason = reason or "finished"
         why = one.why or WHY.get(reason, why)
-        event = replace(event, reason=reason, why=why, spoken=spoken, last_word=word)
-        self._tell(one.owner, one.ident, event)
+        self._tell(one.owner, one.ident, replace(event, reason=reason, why=why))
         ask = ledger.known.get(request)
         if ask is not None and ask.at <= now:  # else it was asked again, and is still to come
             ask.ended = True
 
 
-def find_beginning(speeches: Sequence[Speech], piece: Speech) -> float:
-    """Return when an utterance began, seconds, of which `piece` is one of the pieces, in the order of their
-    starts: a pause does not move that. What is paused before it began begins in a time that never comes.
-    """
-    first = piece
-    for earlier in reversed([x for x in speeches if x.id == piece.id and x.start < piece.start]):
-        if not is_same_utterance(earlier, first):
-            break
-        first = earlier
-    return first.start if is_paused(first.start) else find_line_start(first)
-
-
-def _begins(plan: Plan, request: str, layer: Layer | None, after: float, fixed: float) -> bool:
-    """Whether something of a request begins later than `after` and before `fixed` seconds."""
-    if layer is None:
-        return any(s.id == request and after < s.start < fixed for s in plan.track.speeches)
+def _begins(plan: Plan, request: str, layer: Layer, after: float, fixed: float) -> bool:
+    """Whether an action of a request begins later than `after` and before `fixed` seconds."""
     low, high = plan.layers[layer].starts.searchsorted((after, fixed), "right")
     cues = plan.layers[layer].cues[int(low) : int(high)]
     return any(c.meta.partition("+")[0] == request and c.start < fixed for c in cues)
@@ -254,28 +285,9 @@ def _said_again(plan: Plan, speech: Speech) -> bool:
     return any(s.id == speech.id and s.start == speech.end for s in plan.track.speeches)
 
 
-def _list_pieces(plan: Plan, one: Running, whole: bool = False) -> list[Speech]:
-    """Return the pieces of an utterance that runs, in the order of their starts; none of an action. whole:
-    also those after it was said why it ends.
-    """
-    if one.layer is not None:
-        return []
-    latest = float("inf") if one.reason is None or whole else one.start
-    every = [s for s in plan.track.speeches if s.id == one.request and one.start <= s.start <= latest]
-    out = every[:1]
-    for piece in every[1:]:
-        if not is_same_utterance(out[-1], piece):
-            break
-        out.append(piece)
-    return out
-
-
 def _lasts(plan: Plan, one: Running, now: float) -> bool:
     """Whether something of a request still plays, or comes."""
     latest = float("inf") if one.reason is None else one.start
-    if one.layer is None:
-        pieces = _list_pieces(plan, one)
-        return bool(pieces) and (pieces[-1].end > now or (pieces[-1].more and one.reason is None))
     lane = plan.layers[one.layer]
     for cue in reversed(lane.cues):
         if cue.end <= now:
@@ -289,8 +301,6 @@ def _lasts(plan: Plan, one: Running, now: float) -> bool:
 
 def _cue_of(plan: Plan, one: Running) -> Cue | None:
     """Return the last action of a request that has ended."""
-    if one.layer is None:
-        return None
     cues = reversed(plan.layers[one.layer].cues)
     return next((c for c in cues if c.meta.partition("+")[0] == one.request and c.start <= one.start), None)
 

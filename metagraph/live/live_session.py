@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +24,7 @@ from metagraph.live.answers import FoundAnswer, find
 from metagraph.live.camera_mimicry import see
 from metagraph.live.generating import Generating
 from metagraph.live.graph_motion import LiveGraph
-from metagraph.live.happenings import Happenings, find_beginning
+from metagraph.live.happenings import SAID, UNSAID, Happenings
 from metagraph.live.ledger import Ledger, OpenAsk, plan_key, reword_for_client
 from metagraph.live.limits import (
     ADDED,
@@ -74,8 +73,6 @@ from metagraph.playback.life.utterances import (
     find_soon,
     goes_on,
     is_paused,
-    is_same_utterance,
-    takes_more,
 )
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.hearing import makers
@@ -89,8 +86,6 @@ from metagraph.speech.spoken_so_far import spoken_until
 from metagraph.speech.spoken_text import read_spoken_line
 from metagraph.speech.word_gestures import telling
 
-UNSAID = "something else is said then"
-SAID = ("say", ADDED)  # the lanes of what is said
 AGAIN = 0.25  # seconds for which a layer without room is not tried again
 TIDY = 0.25  # seconds between two clean-ups of what is over
 KEPT = 10.0  # seconds for which reports and requests of the plan are kept after they are over
@@ -588,6 +583,8 @@ class LiveSession:
             self.ledger.drop(key)
         else:
             self.ledger.settle(key, found)
+            if ask.lane in SAID:
+                self.happenings.promise(key, ask.client, ask.ident, self.plan)
         why = f"too late by {ask.missed:.2f} s" if ask.missed > 0 and not found.why else found.why
         if found.state == "refused" and not found.reports and ask.lane in SAID:
             why = UNSAID
@@ -614,24 +611,17 @@ class LiveSession:
     def _goes_on_from(self, open_: Open) -> bool:
         """Return whether what is said goes on from what was said last under its id."""
         speech, before = self.plan.track.last_speech(open_.key), open_.adds
-        if speech is None or before is None or before.length is not None or speech is before:
+        if speech is None or before is None or speech is before:
             return False
-        if is_paused(speech.start) and not is_paused(before.start):  # it is paused at the same tick
-            speeches = self.plan.track.speeches
-            pieces = [s for s in speeches if s.id == open_.key and s.start >= before.start]
-            first, *others = pieces
-            if first.length is None and not is_paused(first.start) and others:
-                return False  # it was said whole before
-            same = all(is_same_utterance(one, other) for one, other in pairwise(pieces))
-            return same and (first.start == before.start or first.text == before.text)
         told = speech.timing is not None and before.timing is not None
-        return (told and speech.start == before.start) or (not told and speech.start == before.end)
+        # Words that come when all was said go on with it, as an utterance of their own.
+        return speech.asked == before.asked or (told and speech.start == before.start)
 
     def _end_replaced(self, open_: Open) -> None:
         """Report that what waited under an id has ended, if something else has taken its place; so have the
         gestures that were made for what was said.
         """
-        if self._goes_on_from(open_) or (open_.adds is not None and takes_more(open_.adds)):
+        if self._goes_on_from(open_):
             return
         gone = [] if open_.replaces is None else [(open_.key, open_.replaces)]
         if open_.adds is not None:
@@ -645,11 +635,7 @@ class LiveSession:
 
     def _end_waiting(self, key: str, ask: OpenAsk, reason: Reason, why: str) -> None:
         """Report that something has ended which was promised and has not begun."""
-        ahead = self.project.settings.lookahead
-        again = (
-            reason == "replaced" and ask.lane in SAID
-        )  # what takes its place begins as soon as a voice can
-        fixed = find_soon(self.now, ahead) if again else self.now + ahead
+        fixed = self.now + self.project.settings.lookahead
         self.happenings.end_waiting(key, ask, reason, why, self.now, self.plan, fixed)
 
     def _tell_added(self, open_: Open, reply: Reply) -> Reply:
@@ -673,9 +659,10 @@ class LiveSession:
                 at = round_seconds(before.end)
             else:
                 notes = (*notes, str(phrase("nothing new is said: it was said before, or its time is over")))
-        running = self.happenings.running.get(open_.key)
-        began = find_beginning(self.plan.track.speeches, before) if running is None else running.since
-        since = None if is_paused(began) else round_seconds(began)
+        began = self.happenings.find_beginning(before)
+        if began is None and not is_paused(before.start):
+            began = find_line_start(before)
+        since = round_seconds(began)
         if is_paused(before.start):
             at = reply.at
         cut = speech.length is not None and before.end > self.now  # something else cuts short what runs
@@ -739,6 +726,8 @@ class LiveSession:
             out.events.append((client.number, event))
         if found.state in ("refused", "done"):
             why = reword_for_client(found.why, ask.client)
+            if ask.lane in SAID:
+                self.happenings.stop(key, "dropped", why)
             self._end_waiting(key, ask, "dropped", why)
 
     # --- the past

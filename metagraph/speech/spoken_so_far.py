@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from metagraph.playback.life.alphabet import Alphabet
 from metagraph.playback.life.items import Speech, find_line_start, measure_line
 from metagraph.playback.life.line_timing import SpokenWord
-from metagraph.playback.life.utterances import is_paused, is_same_utterance
+from metagraph.playback.life.utterances import is_paused
 from metagraph.speech.word_gestures import telling, words_of
 
 
@@ -39,7 +39,7 @@ def _pieces(said: Sequence[Speech], ident: str, seconds: float) -> list[Speech]:
     for piece in said:
         if piece.id != ident or piece.start >= seconds or is_paused(piece.start):
             continue
-        if len(out) > 0 and not is_same_utterance(out[-1], piece):
+        if len(out) > 0 and out[-1].asked != piece.asked:
             out = []
         elif len(out) > 0 and piece.skip > 0:
             out.pop()

@@ -69,8 +69,8 @@ def median(work: Callable[[], Any]) -> float:
 
 def main() -> None:
     print(
-        "| actions | stances | connections implied | JSON | JSON an action | with the machine listed | ratio "
-        "| writing | reading |"
+        "| actions | stances | implied connections | JSON | JSON per action | with the machine listed "
+        "| ratio | writing | reading |"
     )
     print("|---|---|---|---|---|---|---|---|---|")
     for actions in (10, 100, 1000, 10_000):

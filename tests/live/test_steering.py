@@ -340,3 +340,65 @@ def test_what_is_taken_back_and_paused_at_once_is_not_said_when_others_resume(
     talk.ask(do="resume")
     talk.wait(0.5)
     assert [e["event"] for e in talk.heard] == ["started", "ended"]
+
+
+def test_a_piece_that_begins_as_it_is_interrupted_is_heard_before_its_end_is_reported(talk: Talk) -> None:
+    talk.ask(do="say", id="a", words=[["one", 0.0, 0.3]], more=True)
+    talk.wait(2.0)
+    talk.ask(do="say", id="a", words=[["two", 0.0, 0.3], ["three", 0.4, 0.7]])
+    talk.ask(do="interrupt", what="a")
+    talk.wait(1.0)
+    last = [s for s in talk.session.plan.track.speeches if s.id == "c1/a"][-1]
+    (end,) = [e for e in talk.heard if e["event"] == "ended"]
+    assert end["reason"] == "interrupted" and end["t"] >= last.end - 1e-3
+
+
+@pytest.mark.parametrize("pause", [TICK, 0.05, 0.1, 0.3])
+def test_what_is_said_again_just_after_it_was_taken_back_ends_for_itself(talk: Talk, pause: float) -> None:
+    talk.ask(do="say", id="a", text="It rains all day.")
+    talk.wait(0.5)
+    talk.ask(do="withdraw", what="a")
+    talk.wait(pause)
+    talk.ask(do="say", id="a", text="It snows.")
+    talk.wait(5.0)
+    assert talk.ends("a") == ["withdrawn", "finished"]
+
+
+def test_a_piece_that_is_added_in_a_pause_ends_with_its_utterance(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text="Well")
+    talk.ask(do="pause", what="a")
+    talk.ask(do="say", id="a", text=" so", more=True)
+    talk.ask(do="say", id="a", words=[["then", 0.0, 0.3]], more=True)
+    talk.wait(1.0)
+    assert talk.ends("a") == []
+    talk.ask(do="resume", what="a")
+    talk.ask(do="finish", what="a")
+    talk.wait(4.0)
+    assert talk.ends("a") == ["finished"]
+
+
+def test_an_open_utterance_ends_when_its_id_says_something_later_instead(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text="Well", more=True)
+    talk.wait(1.0)
+    talk.ask(do="say", id="a", text="Later.", after=5.0)
+    talk.wait(1.0)
+    assert talk.ends("a") == ["finished"]
+    talk.wait(6.0)
+    assert talk.ends("a") == ["finished", "finished"]
+
+
+def test_an_utterance_that_waits_for_more_stays_open_when_it_is_paused_and_resumed_in_silence(
+    talk: Talk,
+) -> None:
+    talk.ask(do="say", id="a", text="Well", more=True)
+    talk.wait(2.0)
+    talk.ask(do="pause", what="a")
+    talk.wait(1.0)
+    talk.ask(do="resume", what="a")
+    talk.wait(1.0)
+    assert talk.ends("a") == []
+    more = talk.ask(do="say", id="a", text=" then.", more=True)
+    assert more["state"] == "planned" and more["since"] < 1.0
+    talk.ask(do="finish", what="a")
+    talk.wait(2.0)
+    assert talk.ends("a") == ["finished"]

@@ -48,5 +48,5 @@ def test_words_with_their_times_are_counted_by_them() -> None:
 
 
 def test_of_two_utterances_under_one_id_the_last_counts() -> None:
-    again = Speech("a", 10.0, 12.0, text="No.")
+    again = Speech("a", 10.0, 12.0, text="No.", asked=10.0)
     assert spoken_until(ALPHABET, (RAIN, again), "a", 11.5) == ("No.", "No")

@@ -91,6 +91,7 @@ LISTING = (
     Translated("metagraph.playback.life.items", "items"),
     Translated("metagraph.playback.life.track", "track", ("Track",), without=("Track.items", "Track.plus")),
     Translated("metagraph.playback.life.utterances", "utterances"),
+    Translated("metagraph.playback.life.speech_watch", "speech_watch"),
     Translated("metagraph.playback.life.wanted", "wanted"),
     Translated("metagraph.playback.life.expressions", "expressions"),
     Translated("metagraph.playback.life.sympathy", "sympathy"),

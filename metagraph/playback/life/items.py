@@ -48,7 +48,8 @@ class Speech:
     interrupts a lower one. length: seconds that all of it would have taken, if it was cut short. timing: the
     times of its words and mouth shapes, if known. skip: seconds of it that were said before a pause. more:
     whether more of it may come, so that it is not over when it falls silent. over: when it was finished, if
-    it had fallen silent before.
+    it had fallen silent before. asked: when the first piece of its utterance was asked for, which all its
+    pieces share and no other utterance of its id has.
     """
 
     id: str
@@ -62,6 +63,7 @@ class Speech:
     skip: float = 0.0
     more: bool = False
     over: float | None = None
+    asked: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +159,8 @@ def behind(said: Sequence[Speech], new: Speech, now: float) -> Speech:
         return new
     end = new.start
     for speech in said:
-        plain = speech.timing is None and speech.line is None and speech.length is None
+        paced = speech.timing is None or speech.timing.paced
+        plain = paced and speech.line is None and speech.length is None
         if speech.id == new.id and plain and speech.start <= end and end < speech.end:
             end = speech.end
     return new if end == new.start else replace(new, start=end, end=end + (new.end - new.start))
@@ -229,7 +232,7 @@ def alike_speeches(one: Sequence[Speech], other: Sequence[Speech]) -> bool:
 def _same_speech(a: Speech, b: Speech) -> bool:
     if a.line != b.line or a.text != b.text or a.length != b.length or a.priority != b.priority:
         return False
-    if a.skip != b.skip or a.more != b.more or a.over != b.over:
+    if a.skip != b.skip or a.more != b.more or a.over != b.over or a.asked != b.asked:
         return False
     return a.id == b.id and a.start == b.start and a.end == b.end and alike_timings(a.timing, b.timing)
 

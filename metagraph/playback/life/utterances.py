@@ -100,29 +100,31 @@ def find_slot(track: Track) -> float:
 
 def break_off(track: Track, ident: str, stop: float) -> Track:
     """Return the track with an utterance ended at `stop`: its later pieces are not said."""
+    last = track.last_speech(ident)
     speeches: list[Speech] = []
     for speech in track.speeches:
         if speech.id != ident or speech.end <= stop:
             speeches.append(speech)
         elif speech.start < stop:
             speeches.append(cut(speech, stop))
-    return _closed(track, speeches, ident, stop, True)
+    return track if last is None else _closed(track, speeches, last, stop, True)
 
 
 def finish_speech(track: Track, ident: str, soon: float) -> Track:
     """Return the track with an utterance that is over once all its known pieces are said."""
-    return _closed(track, list(track.speeches), ident, soon, False)
+    last = track.last_speech(ident)
+    return track if last is None else _closed(track, list(track.speeches), last, soon, False)
 
 
-def _closed(track: Track, speeches: Sequence[Speech], ident: str, now: float, cuts: bool) -> Track:
-    """Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it
-    was broken off.
+def _closed(track: Track, speeches: Sequence[Speech], of: Speech, now: float, cuts: bool) -> Track:
+    """Return the track with these speeches, in which an utterance expects no more pieces. of: its last piece
+    before. cuts: whether it was broken off.
     """
     out = list(speeches)
     end = now
     for n in reversed(range(len(out))):
         last = out[n]
-        if last.id != ident:
+        if last.id != of.id or last.asked != of.asked:
             continue
         held = cuts and last.length is not None  # it was paused
         silent = last.end < now and (last.more or held)
@@ -130,7 +132,7 @@ def _closed(track: Track, speeches: Sequence[Speech], ident: str, now: float, cu
         out[n] = replace(last, more=False, over=now if silent else last.over, length=length)
         end = max(last.end, now)
         break
-    moods = [_until(m, end) if m.id == ident and m.end == PAUSED else m for m in track.moods]
+    moods = [_until(m, end) if m.id == of.id and m.end == PAUSED else m for m in track.moods]
     return Track(track.looks, tuple(out), track.modes, track.places, track.blinks, track.stays, tuple(moods))
 
 
@@ -156,7 +158,7 @@ def pause(track: Track, ident: str, made: AbstractSet[str], stop: float, slot: f
             held.append(replace(speech, start=speech.start + by, end=speech.end + by))
     last = track.last_speech(ident)
     if len(held) == 0 and last is not None and last.more and last.start < PAUSED:
-        held.append(Speech(ident, slot, slot, None, "", last.priority, None, None, 0.0, True))
+        held.append(Speech(ident, slot, slot, None, "", last.priority, more=True, asked=last.asked))
     if len(held) == 0:
         return track
     moods = [
@@ -211,15 +213,10 @@ def explain_end(speeches: Sequence[Speech], speech: Speech) -> str:
     it is not over there.
     """
     coming = next((s for s in speeches if s.id == speech.id and s.start > speech.start), None)
-    if speech.more or (coming is not None and is_same_utterance(speech, coming)):
+    if coming is not None and coming.asked == speech.asked:
         return ""
+    if speech.more:
+        return "" if coming is None else "replaced"
     if speech.length is None:
         return "finished"
     return "interrupted" if coming is None or coming.start > speech.end + TOGETHER else "replaced"
-
-
-def is_same_utterance(one: Speech, other: Speech) -> bool:
-    """Return whether a later piece of the same id continues an earlier one."""
-    if one.more or (other.skip > 0 and one.length is not None and one.over is None):
-        return True
-    return one.length is None and (other.start >= PAUSED or other.start - one.end < TOGETHER)

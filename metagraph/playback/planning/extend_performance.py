@@ -40,7 +40,7 @@ def hear_asks(
     soon = find_soon(now, project.settings.lookahead)
     meant = understand(project, asks, fixed, soon)
     turning = [layer for layer in LAYERS if model(project, layer).modes]
-    found = heard(plan.requests, plan.track, meant, fixed, soon, turning)
+    found = heard(plan.requests, plan.track, meant, now, fixed, soon, turning)
     # Without any asks everything is planned again, so that an edited project shows; with some, what they have
     # to do with.
     leave = (

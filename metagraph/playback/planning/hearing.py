@@ -14,6 +14,7 @@ from metagraph.playback.life.spots import is_same_spot, named
 from metagraph.playback.life.track import Track
 from metagraph.playback.life.utterances import (
     PAUSED,
+    TOGETHER,
     break_off,
     find_slot,
     find_stop,
@@ -74,13 +75,14 @@ def heard(
     requests: Sequence[MetaRequest],
     track: Track,
     meant: Meaning,
+    present: float,
     now: float,
     soon: float,
     turning: Sequence[Layer],
 ) -> Heard:
     """Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may
-    overlap in it. now: everything that begins earlier stays; soon: the same for voices. turning: layers whose
-    models perform differently in different modes.
+    overlap in it. present: when they became known. now: everything that begins earlier stays; soon: the same
+    for voices. turning: layers whose models perform differently in different modes.
     """
     more = meant.track()
     gone = set(meant.withdrawn)
@@ -90,7 +92,7 @@ def heard(
         gone.add(request.id)
     for ident in more.idents():
         gone.add(ident)
-    words = add_speeches(meant, track, soon)
+    words = add_speeches(meant, track, present, soon)
     before = [r.id for r in requests]
     before += track.idents()
     # A client that takes everything back keeps the look at the user.
@@ -141,6 +143,10 @@ def heard(
         if ident not in words.on:
             over.add(ident)
     left = words.leave(left.without(over, now))
+    for ident in over:
+        open_ = left.last_speech(ident)
+        if open_ is not None and open_.more:  # something else takes its place
+            left = finish_speech(left, ident, soon)
     lasting = Track(
         more.looks, tuple(words.said), more.modes, more.places, more.blinks, tuple(stays), tuple(words.moods)
     )
@@ -165,7 +171,7 @@ class AddedSpeeches:
         """Return the part of a track that stays: moods of speeches that continue last as long as these,
         unless another mood is requested.
         """
-        if len(self.on) == 0:
+        if len(self.on) == 0 and len(self.begun) == 0:
             return track
         other = {m.id for m in self.moods}
         ends: dict[str, float] = {}
@@ -184,9 +190,9 @@ class AddedSpeeches:
         )
 
 
-def add_speeches(meant: Meaning, track: Track, soon: float) -> AddedSpeeches:
+def add_speeches(meant: Meaning, track: Track, present: float, soon: float) -> AddedSpeeches:
     """Return the effect of asks to say something on a track: a new line, a line after another, or more of
-    one.
+    one. present: what ended by then is over, and its end was reported; more of it begins a new utterance.
     """
     said: list[Speech] = []
     begun: set[str] = set()
@@ -206,22 +212,30 @@ def add_speeches(meant: Meaning, track: Track, soon: float) -> AddedSpeeches:
         if paces and asked.timing is None and asked.line is None:
             asked = pace_speech(meant.alphabet, asked)
         one = going_on(last, asked, now)
+        continues = False
         if one is not asked and last is not None and one.start == last.start:
-            begun.add(one.id)
-            on.add(one.id)
+            continues = True
             said = [s for s in said if s.id != one.id or s.start < one.start]
             if last is before:
+                begun.add(one.id)
                 said.extend([s for s in track.speeches if s.id == one.id and s is not last])
-        elif one is asked and not taken:
-            one = behind([*track.speeches, *said], asked, now)
-            opens = last is not None and takes_more(last) and told.line is None and one.start <= now
-            if one is not asked or opens:
-                on.add(one.id)
+        elif one is asked and last is not None:
+            same = [s for s in [*track.speeches, *said] if s.id == last.id and s.asked == last.asked]
+            one = behind(same, asked, now)
+            continues = one is not asked or (takes_more(last) and told.line is None and one.start <= now)
+        over = last is not None and last.end <= present and not takes_more(last)
+        since = find_asked(track, last, continues and not over, one.id, soon)
+        if not continues:  # it replaces what was asked for at the same time
+            said = [s for s in said if s.id != one.id]
+            begun = _without(begun, one.id)
+            on = _without(on, one.id)
+        if before is not None and since == before.asked:
+            on.add(one.id)
         if one.start != told.start:
             later[one.id] = one.start - told.start
-        if one is asked and one.id not in on and track.last_speech(one.id) is not None:
+        if not continues and one.id not in on and track.last_speech(one.id) is not None:
             anew.add(one.id)
-        said.append(one)
+        said.append(replace(one, asked=since))
     opened = {s.id for s in said if s.more}
     moods: list[MoodFrom] = []
     for m in meant.moods:
@@ -229,6 +243,24 @@ def add_speeches(meant: Meaning, track: Track, soon: float) -> AddedSpeeches:
         end = PAUSED if m.id in opened else m.end + by
         moods.append(MoodFrom(m.id, m.start + by, m.valence, m.arousal, m.intensity, end))
     return AddedSpeeches(said, begun, on, anew, moods)
+
+
+def _without(idents: AbstractSet[str], ident: str) -> set[str]:
+    left: set[str] = set()
+    for other in idents:
+        if other != ident:
+            left.add(other)
+    return left
+
+
+def find_asked(track: Track, last: Speech | None, continues: bool, ident: str, soon: float) -> float:
+    """Return when the utterance of a new piece was asked for. last: the piece before it, None if that is
+    taken back; continues: whether the new one goes on from it.
+    """
+    if last is not None and continues:
+        return last.asked
+    known = track.last_speech(ident) if last is None else last
+    return soon if known is None else max(soon, known.asked + TOGETHER)
 
 
 def _steer(requests: Sequence[MetaRequest], heard: Heard, meant: Meaning, now: float, soon: float) -> Heard:

@@ -1,5 +1,5 @@
-"""What life adds to a pose, written from docs/reference, "What life adds to a pose", alone; each function
-names the bold words it follows.
+"""What life adds to a pose, written alone from docs/reference, "What life adds to a pose" and the two pages
+after it; each function names the headings it follows.
 """
 
 from math import atan2, cos, exp, hypot, radians, sin, sqrt, tanh
@@ -31,23 +31,23 @@ def sign(x: float) -> float:
 
 
 def turning(x: float, most: float, behind: float) -> float:
-    """ "The head"; the limits in degrees."""
+    """ "See the targets from the head"; the limits in degrees."""
     m, d = radians(most), radians(behind)
     return clamp(x, -m, m) * (1.0 - ease((abs(x) - d) / (np.pi - d)))
 
 
 def over(a: float, m: float) -> float:
-    """ "The head"."""
+    """ "Turn the head"."""
     return sign(a) * max(abs(a) - m, 0.0)
 
 
 def eyes_way(g: float, angle: float) -> float:
-    """ "Where the gaze is"."""
+    """ "Share the gaze among targets"."""
     return ease(g / (0.021 + 0.0022 * angle))
 
 
 def head_way(g: float, angle: float) -> float:
-    """ "Where the gaze is"."""
+    """ "Share the gaze among targets"."""
     x = clamp((g - 0.04) / (0.55 + 0.006 * angle), 0.0, 1.0)
     return (1.0 - (1.0 + 8.0 * x) * exp(-8.0 * x)) / (1.0 - 9.0 * exp(-8.0))
 
@@ -108,7 +108,7 @@ class Life:
         return v, a, i
 
     def met(self, place: int) -> tuple[Numbers, Numbers, float]:
-        """Where a target is, its direction, its amount; "Where the gaze is"."""
+        """Where a target is, its direction, its amount; "Share the gaze among targets"."""
         _, to, _, amount, _, _ = self.events["targets"][place]
         if isinstance(to, str):
             to = self.character.data.get("points", {}).get(to, self.rig["partner"] if to == "user" else None)
@@ -117,7 +117,7 @@ class Life:
         return np.array(to), np.array(to) - self.rig["eyes_at_rest"], amount
 
     def shares(self, t: float) -> list[tuple[int, float, float]]:
-        """The eyes' and the head's shares of targets, the newest first; "Where the gaze is"."""
+        """The eyes' and the head's shares of targets, the newest first; "Share the gaze among targets"."""
         out: list[tuple[int, float, float]] = []
         came = headed = 0.0
         for place in range(begun(self.events["targets"], t), -1, -1):
@@ -135,7 +135,7 @@ class Life:
         return out
 
     def wandering(self, t: float, shares: list[tuple[int, float, float]]) -> tuple[Numbers, Numbers]:
-        """What eyes and head do besides; "Away and to and fro"."""
+        """What eyes and head do besides; "Add looks away and jumps of the eyes"."""
         eyes, head = np.zeros(2), np.zeros(2)
         targets, angle = self.events["targets"], self.dials["aversion_angle"]
         n = begun(self.events["aversions"], t)
@@ -160,7 +160,8 @@ class Life:
 
     def look(self, t: float, chain: Numbers, places: Numbers) -> tuple[list[Numbers], list[Numbers]]:
         """Turns of the lookers, and of both eyes to the left and up. chain: its joints' rotations with
-        breath, places: their translations; "Seen from the head", "The head", "The eyes".
+        breath, places: their translations; "See the targets from the head",
+        "Turn the head", "Turn the eyes".
         """
         spun, at = [chain[0]], [places[0]]
         for q, place in zip(chain[1:], places[1:], strict=True):
@@ -206,7 +207,7 @@ class Life:
         return turns, out
 
     def head_turn(self, left: float, up: float, whole: float, spun: list[Numbers]) -> Numbers:
-        """ "The head"."""
+        """ "Turn the head"."""
         s = self.dials["head_share"]
         b = min(1.0, 2.0 * s)
         x, y = (s * a * abs(a) / (abs(a) + radians(15.0)) for a in (left, up))
@@ -289,7 +290,9 @@ class Life:
     def added(
         self, composed: Pose, t: float, said: list[tuple[float, float, str]]
     ) -> tuple[Pose, dict[str, float]]:
-        """The pose with life, and what it adds to morph targets; "Breath", "The eyes", "Lids", "The face"."""
+        """The pose with life, and what it adds to morph targets; "Breath", "Posture", "Turn the eyes",
+        "Lids", "Joints of the face", "Morph targets".
+        """
         rotations, translations = composed[0].copy(), composed[1].copy()
         chain, full = self.rig["chain"], self.breath(t)
         v, a, i = self.mood(t)

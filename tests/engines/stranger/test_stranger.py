@@ -1,10 +1,10 @@
 """docs/reference alone is enough: an evaluator written from its words, without a line of ours, poses
 characters as the conformance vectors say.
 
-`reading`, `posing`, `weighing`, `enlivening`, `drawing` and `planning`, beside this file, are that evaluator;
-each function names the heading or the bold words of the page whose rule it follows. Where a case fails after
-a change of the page or the player, mend whichever is wrong; never teach the evaluator what the page does not
-say.
+`reading`, `posing`, `weighing`, `enlivening`, `drawing`, `planning` and `happening`, beside this file, are
+that evaluator; each function names the heading or the bold words of the page whose rule it follows. Where a
+case fails after a change of the page or the player, mend whichever is wrong; never teach the evaluator what
+the page does not say.
 """
 
 import ast
@@ -22,6 +22,7 @@ from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, PARTS, Limb, Project
 from tests.engines.stranger.comparing import NAMES, SHIPPED, Vectors, compared, read_vectors
 from tests.engines.stranger.drawing import key32, rests_of
+from tests.engines.stranger.happening import Happening, can_happen
 from tests.engines.stranger.planning import can_plan, cues_of
 from tests.engines.test_real_exports import project_of
 from tests.thorough import some
@@ -33,6 +34,11 @@ SEEN = {
 }  # fmt: skip
 WEIGHT, FEET, SOFT = "the arms' weight", "planted feet", "joints that move in part"
 CYCLES = "a cycle that repeats"
+# Those whose life layers play.
+ALIVE = (
+    *(name for name in NAMES if name != "sparse"),
+    *("calm", "quiet", "steady", "slow", "random1", "random2"),
+)
 
 
 @pytest.fixture(scope="module")
@@ -88,6 +94,27 @@ def test_the_pages_words_plan_what_is_asked_once(shipped: dict[str, Vectors], na
                     else pytest.approx(value, abs=vectors["tolerance"]["seconds"])
                     for key, value in wanted.items()
                 }, case["name"]
+
+
+@pytest.mark.parametrize(
+    ("name", "least"), [*zip(ALIVE, (90, 93, 10, 5, 12, 5, 5, 5, 5, 320, 306), strict=True)]
+)
+def test_the_pages_words_draw_the_events_of_life(name: str, least: int) -> None:
+    character, vectors = read_vectors(SHIPPED / name)
+    drawn = [case for case in vectors["cases"] if can_happen(character, case)]
+    assert len(drawn) >= least
+    for case in drawn:
+        ours = Happening(character, case).lanes()
+        assert ours.keys() == case["life"].keys(), case["name"]
+        for lane, rows in ours.items():
+            wanted = case["life"][lane]
+            assert len(rows) == len(wanted), (case["name"], lane)
+            for mine, theirs in zip(rows, wanted, strict=True):
+                near = vectors["tolerance"]["seconds"]
+                assert mine == [
+                    value if isinstance(value, str | bool | list) else pytest.approx(value, abs=near)
+                    for value in theirs
+                ], (case["name"], lane)
 
 
 def test_the_pages_words_hash_as_the_vectors_do(shipped: dict[str, Vectors]) -> None:

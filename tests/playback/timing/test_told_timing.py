@@ -55,7 +55,7 @@ def test_the_mouth_is_shut_in_a_pause_between_words(sample: Project) -> None:
 def test_the_page_on_the_format_tells_when_the_mouth_is_shut(sample: Project) -> None:
     page = (Path(__file__).parents[3] / "docs" / "reference" / "life.md").read_text(encoding="utf-8")
     page = " ".join(page.split())
-    found = re.search(r"`(\{\"do\": \"say\".*\})` has the mouth shut from (\S+) to (\S+) s", page)
+    found = re.search(r"`(\{\"do\": \"say\".*\})` the mouth is shut from (\S+) to (\S+) s", page)
     assert found is not None
     plan = plan_performance(sample, [a.read_request(found[1])], 10.0, idle=False)
     assert shown(plan, np.linspace(float(found[2]), float(found[3]), 50)).max() < 0.05

@@ -4,6 +4,7 @@
 #include "describe.hpp"
 #include "hear.hpp"
 #include "pose.hpp"
+#include "speech_watch.hpp"
 #include "spoken_so_far.hpp"
 #include "streamed_voice.hpp"
 
@@ -188,6 +189,7 @@ private:
     List<double> weights_;
     List<Happening> happened_;
     int count_ = 0;
+    SpeechWatch speech_;
     double seen_ = -INFINITY, forgot_ = 0.0; // when the update before was, and the last forgetting
 
     std::string made_id() { return lang::text("#", ++count_); }
@@ -259,15 +261,8 @@ private:
                 note(cue->start, cue->end, layer, cue->action->name, cue->meta.substr(0, cue->meta.find('+')));
             }
         }
-        for (const auto& speech : plan_->track->speeches) {
-            const double over = speech->over.value_or(speech->end);
-            if (std::max(speech->end, over) <= seen_ || speech->start > now_) continue;
-            const std::string said = speech->line.value_or(speech->text);
-            const std::string reason = speech->end > now_ ? "" : utterances::explain_end(plan_->track->speeches, speech);
-            note(speech->start, speech->end, "speech", said, speech->id, speech->over.has_value() ? "" : reason);
-            if (speech->over.has_value() && over > seen_ && over <= now_) {
-                happened_.push_back({"end", over, "speech", said, speech->id, reason});
-            }
+        for (const auto& event : speech_.watch(plan_->track->speeches, seen_, now_)) {
+            happened_.push_back({event->kind, event->at, "speech", event->said, event->id, event->reason});
         }
         seen_ = now_;
         auto earlier = [](const Happening& a, const Happening& b) { return a.at < b.at; };
@@ -278,11 +273,10 @@ private:
     }
 
     void note(
-        double start, double end, const std::string& layer, const std::string& action, const std::string& meta,
-        const std::string& reason = ""
+        double start, double end, const std::string& layer, const std::string& action, const std::string& meta
     ) {
         if (start > seen_ && start <= now_) happened_.push_back({"begin", start, layer, action, meta, ""});
-        if (end > seen_ && end <= now_) happened_.push_back({"end", end, layer, action, meta, reason});
+        if (end > seen_ && end <= now_) happened_.push_back({"end", end, layer, action, meta, ""});
     }
 };
 

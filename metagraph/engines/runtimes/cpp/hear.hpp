@@ -124,7 +124,7 @@ inline Ref<const Plan> hear(
     for (const std::string& layer : graph::LAYERS) {
         if (!graph.layer(layer).markov->modes.empty()) turning.push_back(layer);
     }
-    const Ref<Heard> heard = hearing::heard(plan.requests, plan.track, meaning, fixed, soon, turning);
+    const Ref<Heard> heard = hearing::heard(plan.requests, plan.track, meaning, now, fixed, soon, turning);
     Set<std::string> leave;
     for (const std::string& layer : graph::LAYERS) {
         // Without any asks everything is planned on; with some, what they have to do with.

@@ -29,11 +29,20 @@ inline Ref<Heard> heard(
     const List<Ref<MetaRequest>>& requests,
     const Ref<Track>& track,
     const Ref<Meaning>& meant,
+    double present,
     double now,
     double soon,
     const List<std::string>& turning
 );
-inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Track>& track, double soon);
+inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Track>& track, double present, double soon);
+inline Set<std::string> _without(const Set<std::string>& idents, const std::string& ident);
+inline double find_asked(
+    const Ref<Track>& track,
+    const Ref<Speech>& last,
+    bool continues,
+    const std::string& ident,
+    double soon
+);
 inline Ref<Heard> _steer(
     const List<Ref<MetaRequest>>& requests,
     const Ref<Heard>& heard,
@@ -139,7 +148,7 @@ struct SteeredSpeech {
 };
 
 inline Ref<Track> AddedSpeeches::leave(const Ref<Track>& track) const {
-    if (lang::len(this->on) == 0) {
+    if (lang::len(this->on) == 0 && lang::len(this->begun) == 0) {
         return track;
     }
     Set<std::string> other;
@@ -332,12 +341,13 @@ inline List<std::string> makers(const std::string& ident) {
 }
 
 /// Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it.
-/// now: everything that begins earlier stays; soon: the same for voices. turning: layers whose models perform
-/// differently in different modes.
+/// present: when they became known. now: everything that begins earlier stays; soon: the same for voices. turning:
+/// layers whose models perform differently in different modes.
 inline Ref<Heard> heard(
     const List<Ref<MetaRequest>>& requests,
     const Ref<Track>& track,
     const Ref<Meaning>& meant,
+    double present,
     double now,
     double soon,
     const List<std::string>& turning
@@ -353,7 +363,7 @@ inline Ref<Heard> heard(
     for (const auto& ident : more->idents()) {
         gone.insert(ident);
     }
-    Ref<AddedSpeeches> words = hearing::add_speeches(meant, track, soon);
+    Ref<AddedSpeeches> words = hearing::add_speeches(meant, track, present, soon);
     List<std::string> before;
     for (const auto& r : requests) {
         before.push_back(r->id);
@@ -511,6 +521,12 @@ inline Ref<Heard> heard(
         }
     }
     left = words->leave(left->without(over, now));
+    for (const auto& ident : over) {
+        Ref<Speech> open_ = left->last_speech(ident);
+        if (open_ != nullptr && open_->more) { // something else takes its place
+            left = utterances::finish_speech(left, ident, soon);
+        }
+    }
     Ref<Track> lasting = lang::made<Track>(
         more->looks,
         words->said,
@@ -524,8 +540,14 @@ inline Ref<Heard> heard(
     return hearing::_steer(requests, said, meant, now, soon);
 }
 
-/// Return the effect of asks to say something on a track: a new line, a line after another, or more of one.
-inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Track>& track, double soon) {
+/// Return the effect of asks to say something on a track: a new line, a line after another, or more of one. present:
+/// what ended by then is over, and its end was reported; more of it begins a new utterance.
+inline Ref<AddedSpeeches> add_speeches(
+    const Ref<Meaning>& meant,
+    const Ref<Track>& track,
+    double present,
+    double soon
+) {
     List<Ref<Speech>> said;
     Set<std::string> begun;
     Set<std::string> on;
@@ -557,7 +579,8 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
                 told->timing,
                 told->skip,
                 told->more,
-                told->over
+                told->over,
+                told->asked
             );
         }
         bool paces = told->more || (last != nullptr && last->more);
@@ -565,9 +588,9 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
             asked = items::pace_speech(meant->alphabet, asked);
         }
         Ref<Speech> one = items::going_on(last, asked, now);
+        bool continues = false;
         if (one != asked && last != nullptr && one->start == last->start) {
-            begun.insert(one->id);
-            on.insert(one->id);
+            continues = true;
             List<Ref<Speech>> found;
             for (const auto& s : said) {
                 if (s->id != one->id || s->start < one->start) {
@@ -576,6 +599,7 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
             }
             said = found;
             if (last == before) {
+                begun.insert(one->id);
                 List<Ref<Speech>> found2;
                 for (const auto& s : track->speeches) {
                     if (s->id == one->id && s != last) {
@@ -584,23 +608,52 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
                 }
                 lang::extend(said, found2);
             }
-        } else if (one == asked && !taken) {
-            one = items::behind(lang::together(track->speeches, said), asked, now);
-            bool opens = last != nullptr
-                && utterances::takes_more(last)
-                && !told->line.has_value()
-                && one->start <= now;
-            if (one != asked || opens) {
-                on.insert(one->id);
+        } else if (one == asked && last != nullptr) {
+            List<Ref<Speech>> same;
+            for (const auto& s : lang::together(track->speeches, said)) {
+                if (s->id == last->id && s->asked == last->asked) {
+                    same.push_back(s);
+                }
             }
+            one = items::behind(same, asked, now);
+            continues = one != asked || (utterances::takes_more(last) && !told->line.has_value() && one->start <= now);
+        }
+        bool over = last != nullptr && last->end <= present && !utterances::takes_more(last);
+        double since = hearing::find_asked(track, last, continues && !over, one->id, soon);
+        if (!continues) { // it replaces what was asked for at the same time
+            List<Ref<Speech>> found3;
+            for (const auto& s : said) {
+                if (s->id != one->id) {
+                    found3.push_back(s);
+                }
+            }
+            said = found3;
+            begun = hearing::_without(begun, one->id);
+            on = hearing::_without(on, one->id);
+        }
+        if (before != nullptr && since == before->asked) {
+            on.insert(one->id);
         }
         if (one->start != told->start) {
             later[one->id] = one->start - told->start;
         }
-        if (one == asked && !lang::contains(on, one->id) && track->last_speech(one->id) != nullptr) {
+        if (!continues && !lang::contains(on, one->id) && track->last_speech(one->id) != nullptr) {
             anew.insert(one->id);
         }
-        said.push_back(one);
+        said.push_back(lang::made<Speech>(
+            one->id,
+            one->start,
+            one->end,
+            one->line,
+            one->text,
+            one->priority,
+            one->length,
+            one->timing,
+            one->skip,
+            one->more,
+            one->over,
+            since
+        ));
     }
     Set<std::string> opened;
     for (const auto& s : said) {
@@ -615,6 +668,32 @@ inline Ref<AddedSpeeches> add_speeches(const Ref<Meaning>& meant, const Ref<Trac
         moods.push_back(lang::made<MoodFrom>(m->id, m->start + by, m->valence, m->arousal, m->intensity, end));
     }
     return lang::made<AddedSpeeches>(said, begun, on, anew, moods);
+}
+
+inline Set<std::string> _without(const Set<std::string>& idents, const std::string& ident) {
+    Set<std::string> left;
+    for (const auto& other : idents) {
+        if (other != ident) {
+            left.insert(other);
+        }
+    }
+    return left;
+}
+
+/// Return when the utterance of a new piece was asked for. last: the piece before it, None if that is taken back;
+/// continues: whether the new one goes on from it.
+inline double find_asked(
+    const Ref<Track>& track,
+    const Ref<Speech>& last,
+    bool continues,
+    const std::string& ident,
+    double soon
+) {
+    if (last != nullptr && continues) {
+        return last->asked;
+    }
+    Ref<Speech> known = last == nullptr ? track->last_speech(ident) : last;
+    return known == nullptr ? soon : std::max(soon, known->asked + utterances::TOGETHER);
 }
 
 /// Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the plan before.

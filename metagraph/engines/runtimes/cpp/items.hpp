@@ -82,7 +82,8 @@ struct LookAt {
 /// Something said. line: id of the project's line, None for `text` alone. priority: a higher one interrupts a lower
 /// one. length: seconds that all of it would have taken, if it was cut short. timing: the times of its words and mouth
 /// shapes, if known. skip: seconds of it that were said before a pause. more: whether more of it may come, so that it
-/// is not over when it falls silent. over: when it was finished, if it had fallen silent before.
+/// is not over when it falls silent. over: when it was finished, if it had fallen silent before. asked: when the first
+/// piece of its utterance was asked for, which all its pieces share and no other utterance of its id has.
 struct Speech {
     std::string id;
     double start;
@@ -95,6 +96,7 @@ struct Speech {
     double skip;
     bool more;
     std::optional<double> over;
+    double asked;
 
     Speech(
         std::string id_,
@@ -107,7 +109,8 @@ struct Speech {
         Ref<LineTiming> timing_ = nullptr,
         double skip_ = 0.0,
         bool more_ = false,
-        std::optional<double> over_ = std::nullopt
+        std::optional<double> over_ = std::nullopt,
+        double asked_ = 0.0
     )
         : id(std::move(id_)),
             start(start_),
@@ -119,7 +122,8 @@ struct Speech {
             timing(std::move(timing_)),
             skip(skip_),
             more(more_),
-            over(over_) {}
+            over(over_),
+            asked(asked_) {}
 };
 
 /// The mode from `start` on; None for talking while something is said and idling otherwise.
@@ -192,7 +196,8 @@ inline Ref<Speech> cut(const Ref<Speech>& speech, double at) {
             speech->timing,
             speech->skip,
             speech->more,
-            speech->over
+            speech->over,
+            speech->asked
         );
 }
 
@@ -227,7 +232,8 @@ inline List<Ref<Speech>> apart(const List<Ref<Speech>>& speeches) {
                     items::cut(last, speech->start)->timing,
                     items::cut(last, speech->start)->skip,
                     false,
-                    items::cut(last, speech->start)->over
+                    items::cut(last, speech->start)->over,
+                    items::cut(last, speech->start)->asked
                 ));
             }
         }
@@ -243,7 +249,8 @@ inline Ref<Speech> behind(const List<Ref<Speech>>& said, const Ref<Speech>& new_
     }
     double end = new_->start;
     for (const auto& speech : said) {
-        bool plain = speech->timing == nullptr && !speech->line.has_value() && !speech->length.has_value();
+        bool paced = speech->timing == nullptr || speech->timing->paced;
+        bool plain = paced && !speech->line.has_value() && !speech->length.has_value();
         if (speech->id == new_->id && plain && speech->start <= end && end < speech->end) {
             end = speech->end;
         }
@@ -261,7 +268,8 @@ inline Ref<Speech> behind(const List<Ref<Speech>>& said, const Ref<Speech>& new_
             new_->timing,
             new_->skip,
             new_->more,
-            new_->over
+            new_->over,
+            new_->asked
         );
 }
 
@@ -299,7 +307,8 @@ inline Ref<Speech> going_on(const Ref<Speech>& old, const Ref<Speech>& new_, dou
         timing,
         old->skip,
         new_->more,
-        new_->over
+        new_->over,
+        new_->asked
     );
 }
 
@@ -318,7 +327,8 @@ inline Ref<Speech> pace_speech(const Ref<Alphabet>& alphabet, const Ref<Speech>&
         timing,
         new_->skip,
         new_->more,
-        new_->over
+        new_->over,
+        new_->asked
     );
 }
 
@@ -350,7 +360,8 @@ inline Ref<Speech> _behind_words(
         timing,
         old->skip,
         new_->more,
-        new_->over
+        new_->over,
+        new_->asked
     );
 }
 
@@ -400,7 +411,7 @@ inline bool _same_speech(const Ref<Speech>& a, const Ref<Speech>& b) {
     if (a->line != b->line || a->text != b->text || a->length != b->length || a->priority != b->priority) {
         return false;
     }
-    if (a->skip != b->skip || a->more != b->more || a->over != b->over) {
+    if (a->skip != b->skip || a->more != b->more || a->over != b->over || a->asked != b->asked) {
         return false;
     }
     return a->id == b->id

@@ -71,7 +71,7 @@ inline List<Ref<Speech>> _pieces(const List<Ref<Speech>>& said, const std::strin
         if (piece->id != ident || piece->start >= seconds || utterances::is_paused(piece->start)) {
             continue;
         }
-        if (lang::len(out) > 0 && !utterances::is_same_utterance(lang::at(out, -1), piece)) {
+        if (lang::len(out) > 0 && lang::at(out, -1)->asked != piece->asked) {
             out = List<Ref<Speech>>{};
         } else if (lang::len(out) > 0 && piece->skip > 0) {
             out.pop_back();

@@ -44,7 +44,7 @@ inline Ref<Track> finish_speech(const Ref<Track>& track, const std::string& iden
 inline Ref<Track> _closed(
     const Ref<Track>& track,
     const List<Ref<Speech>>& speeches,
-    const std::string& ident,
+    const Ref<Speech>& of,
     double now,
     bool cuts
 );
@@ -66,7 +66,6 @@ inline Ref<Track> _moved(
     double by
 );
 inline std::string explain_end(const List<Ref<Speech>>& speeches, const Ref<Speech>& speech);
-inline bool is_same_utterance(const Ref<Speech>& one, const Ref<Speech>& other);
 
 }  // namespace utterances
 
@@ -200,6 +199,7 @@ inline double find_slot(const Ref<Track>& track) {
 
 /// Return the track with an utterance ended at `stop`: its later pieces are not said.
 inline Ref<Track> break_off(const Ref<Track>& track, const std::string& ident, double stop) {
+    Ref<Speech> last = track->last_speech(ident);
     List<Ref<Speech>> speeches;
     for (const auto& speech : track->speeches) {
         if (speech->id != ident || speech->end <= stop) {
@@ -208,19 +208,21 @@ inline Ref<Track> break_off(const Ref<Track>& track, const std::string& ident, d
             speeches.push_back(items::cut(speech, stop));
         }
     }
-    return utterances::_closed(track, speeches, ident, stop, true);
+    return last == nullptr ? track : utterances::_closed(track, speeches, last, stop, true);
 }
 
 /// Return the track with an utterance that is over once all its known pieces are said.
 inline Ref<Track> finish_speech(const Ref<Track>& track, const std::string& ident, double soon) {
-    return utterances::_closed(track, track->speeches, ident, soon, false);
+    Ref<Speech> last = track->last_speech(ident);
+    return last == nullptr ? track : utterances::_closed(track, track->speeches, last, soon, false);
 }
 
-/// Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it was broken off.
+/// Return the track with these speeches, in which an utterance expects no more pieces. of: its last piece before. cuts:
+/// whether it was broken off.
 inline Ref<Track> _closed(
     const Ref<Track>& track,
     const List<Ref<Speech>>& speeches,
-    const std::string& ident,
+    const Ref<Speech>& of,
     double now,
     bool cuts
 ) {
@@ -228,7 +230,7 @@ inline Ref<Track> _closed(
     double end = now;
     for (const auto& n : lang::backwards(lang::range(lang::len(out)))) {
         Ref<Speech> last = lang::at(out, n);
-        if (last->id != ident) {
+        if (last->id != of->id || last->asked != of->asked) {
             continue;
         }
         bool held = cuts && last->length.has_value(); // it was paused
@@ -247,14 +249,15 @@ inline Ref<Track> _closed(
             last->timing,
             last->skip,
             false,
-            silent ? std::optional<double>(now) : last->over
+            silent ? std::optional<double>(now) : last->over,
+            last->asked
         );
         end = std::max(last->end, now);
         break;
     }
     List<Ref<MoodFrom>> moods;
     for (const auto& m : track->moods) {
-        moods.push_back((m->id == ident && m->end == utterances::PAUSED) ? utterances::_until(m, end) : m);
+        moods.push_back((m->id == of->id && m->end == utterances::PAUSED) ? utterances::_until(m, end) : m);
     }
     return lang::made<Track>(track->looks, out, track->modes, track->places, track->blinks, track->stays, moods);
 }
@@ -290,7 +293,8 @@ inline Ref<Track> pause(
                 items::cut(speech, stop)->timing,
                 items::cut(speech, stop)->skip,
                 false,
-                items::cut(speech, stop)->over
+                items::cut(speech, stop)->over,
+                items::cut(speech, stop)->asked
             ));
             double skip = stop - items::find_line_start(speech);
             held.push_back(lang::made<Speech>(
@@ -304,7 +308,8 @@ inline Ref<Track> pause(
                 speech->timing,
                 skip,
                 speech->more,
-                speech->over
+                speech->over,
+                speech->asked
             ));
         } else {
             held.push_back(lang::made<Speech>(
@@ -318,7 +323,8 @@ inline Ref<Track> pause(
                 speech->timing,
                 speech->skip,
                 speech->more,
-                speech->over
+                speech->over,
+                speech->asked
             ));
         }
     }
@@ -334,7 +340,9 @@ inline Ref<Track> pause(
             std::nullopt,
             nullptr,
             0.0,
-            true
+            true,
+            std::nullopt,
+            last->asked
         ));
     }
     if (lang::len(held) == 0) {
@@ -390,7 +398,8 @@ inline Ref<Track> resume(const Ref<Track>& track, const std::string& ident, cons
                 s->timing,
                 s->skip,
                 s->more,
-                s->over
+                s->over,
+                s->asked
             ));
         }
     }
@@ -504,8 +513,11 @@ inline std::string explain_end(const List<Ref<Speech>>& speeches, const Ref<Spee
         }
     }
     Ref<Speech> coming = first;
-    if (speech->more || (coming != nullptr && utterances::is_same_utterance(speech, coming))) {
+    if (coming != nullptr && coming->asked == speech->asked) {
         return "";
+    }
+    if (speech->more) {
+        return coming == nullptr ? std::string("") : std::string("replaced");
     }
     if (!speech->length.has_value()) {
         return "finished";
@@ -513,15 +525,6 @@ inline std::string explain_end(const List<Ref<Speech>>& speeches, const Ref<Spee
     return (coming == nullptr || coming->start > speech->end + utterances::TOGETHER)
         ? std::string("interrupted")
         : std::string("replaced");
-}
-
-/// Return whether a later piece of the same id continues an earlier one.
-inline bool is_same_utterance(const Ref<Speech>& one, const Ref<Speech>& other) {
-    if (one->more || (other->skip > 0 && one->length.has_value() && !one->over.has_value())) {
-        return true;
-    }
-    return !one->length.has_value()
-        && (other->start >= utterances::PAUSED || other->start - one->end < utterances::TOGETHER);
 }
 
 }  // namespace utterances

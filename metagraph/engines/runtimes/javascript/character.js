@@ -7,9 +7,10 @@ import { answers, hear, since } from "./hear.js";
 import { findLineStart } from "./items.js";
 import { emptyPlan } from "./plan.js";
 import { Player } from "./pose.js";
+import { SpeechWatch } from "./speech_watch.js";
 import { spokenUntil } from "./spoken_so_far.js";
 import { StreamedVoice } from "./streamed_voice.js";
-import { explainEnd, findForgotten, findSoon } from "./utterances.js";
+import { findForgotten, findSoon } from "./utterances.js";
 import { LAYERS } from "./words.js";
 
 const SLACK = 2; // seconds the horizon may fall behind before it is moved on
@@ -42,6 +43,7 @@ export class Character {
     this.settled = new Map(); // answers of those it has forgotten or never heard of
     this.sounds = new Map(); // of lines that are heard, by their ids
     this.count = 0;
+    this.speech = new SpeechWatch();
     this.seen = -Infinity; // when the update before was
     this.forgot = 0;
     this.happened = [];
@@ -167,13 +169,8 @@ export class Character {
         this.note(start, end, layer, action.name, meta.split("+")[0]); // what goes on after a cut is the same request
       }
     }
-    const { speeches } = this.plan.track;
-    for (const speech of speeches) {
-      const { start, end, line, text, id, over } = speech;
-      if (Math.max(end, over ?? end) <= seen || start > now) continue;
-      const reason = end > now ? "" : explainEnd(speeches, speech);
-      this.note(start, end, "speech", line ?? text, id, over === null ? reason : "");
-      if (over !== null && over > seen && over <= now) this.happened.push({ kind: "end", at: over, layer: "speech", action: line ?? text, meta: id, reason });
+    for (const { kind, at, id, said, reason } of this.speech.watch(this.plan.track.speeches, seen, now)) {
+      this.happened.push({ kind, at, layer: "speech", action: said, meta: id, reason });
     }
     this.seen = now;
     if (this.happened.length === from) return;
@@ -181,9 +178,9 @@ export class Character {
     this.happened.splice(0, this.happened.length - REMEMBERED);
   }
 
-  note(start, end, layer, action, meta, reason = "") {
+  note(start, end, layer, action, meta) {
     if (start > this.seen && start <= this.now) this.happened.push({ kind: "begin", at: start, layer, action, meta, reason: "" });
-    if (end > this.seen && end <= this.now) this.happened.push({ kind: "end", at: end, layer, action, meta, reason });
+    if (end > this.seen && end <= this.now) this.happened.push({ kind: "end", at: end, layer, action, meta, reason: "" });
   }
 
   /**

@@ -26,7 +26,7 @@ export function hear(graph, plan, now, asks, end, options = {}) {
   const soon = findSoon(now, graph.settings.lookahead);
   const meant = understand(graph, asks, fixed, soon);
   const turning = LAYERS.filter((layer) => graph.layers[layer].markov.modes.length);
-  const { track, fresh, withdrawn, stopped, touched } = heard(plan.requests, plan.track, meant, fixed, soon, turning);
+  const { track, fresh, withdrawn, stopped, touched } = heard(plan.requests, plan.track, meant, now, fixed, soon, turning);
   // Without any asks everything is planned on; with some, what they have to do with.
   const leave = asks.length && now > 0 && end === plan.end ? LAYERS.filter((layer) => !touched.has(layer)) : [];
   const after = extend(graph, { ...plan, track }, fixed, fresh, end, options, withdrawn, leave, stopped);

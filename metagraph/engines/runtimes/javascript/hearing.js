@@ -11,6 +11,7 @@ import { isSameSpot, named } from "./spots.js";
 import { Track } from "./track.js";
 import { 
   PAUSED,
+  TOGETHER,
   breakOff,
   findSlot,
   findStop,
@@ -79,18 +80,19 @@ export function makers(ident) {
 }
 
 /**
- * Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it. now:
- * everything that begins earlier stays; soon: the same for voices. turning: layers whose models perform differently in
- * different modes.
+ * Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it.
+ * present: when they became known. now: everything that begins earlier stays; soon: the same for voices. turning: layers
+ * whose models perform differently in different modes.
  * @param {MetaRequest[]} requests
  * @param {Track} track
  * @param {Meaning} meant
+ * @param {number} present
  * @param {number} now
  * @param {number} soon
  * @param {string[]} turning
  * @returns {Heard}
  */
-export function heard(requests, track, meant, now, soon, turning) {
+export function heard(requests, track, meant, present, now, soon, turning) {
   const more = meant.track();
   const gone = new Set(meant.withdrawn);
   for (const report of meant.refused) {
@@ -102,7 +104,7 @@ export function heard(requests, track, meant, now, soon, turning) {
   for (const ident of more.idents()) {
     gone.add(ident);
   }
-  const words = addSpeeches(meant, track, soon);
+  const words = addSpeeches(meant, track, present, soon);
   const before = requests.map((r) => r.id);
   before.push(...track.idents());
   // A client that takes everything back keeps the look at the user.
@@ -168,6 +170,12 @@ export function heard(requests, track, meant, now, soon, turning) {
     }
   }
   left = words.leave(left.without(over, now));
+  for (const ident of over) {
+    const open = left.lastSpeech(ident);
+    if (open !== null && open.more) { // something else takes its place
+      left = finishSpeech(left, ident, soon);
+    }
+  }
   const lasting = new Track(more.looks, [...words.said], more.modes, more.places, more.blinks, [...stays], [...words.moods]);
   const said = new Heard(left.joined(lasting), meant.requests, taken, stopped, touched);
   return _steer(requests, said, meant, now, soon);
@@ -194,7 +202,7 @@ export class AddedSpeeches {
    * requested.
    */
   leave(track) {
-    if (this.on.size === 0) {
+    if (this.on.size === 0 && this.begun.size === 0) {
       return track;
     }
     const other = new Set(this.moods.map((m) => m.id));
@@ -218,16 +226,18 @@ export class AddedSpeeches {
 }
 
 /**
- * Return the effect of asks to say something on a track: a new line, a line after another, or more of one.
+ * Return the effect of asks to say something on a track: a new line, a line after another, or more of one. present: what
+ * ended by then is over, and its end was reported; more of it begins a new utterance.
  * @param {Meaning} meant
  * @param {Track} track
+ * @param {number} present
  * @param {number} soon
  * @returns {AddedSpeeches}
  */
-export function addSpeeches(meant, track, soon) {
+export function addSpeeches(meant, track, present, soon) {
   let said = [];
-  const begun = new Set([]);
-  const on = new Set([]);
+  let begun = new Set([]);
+  let on = new Set([]);
   const anew = new Set([]);
   const later = new Map(); // by how much those begin that are said behind others of their id
   for (const told of meant.speeches) {
@@ -245,27 +255,36 @@ export function addSpeeches(meant, track, soon) {
       asked = paceSpeech(meant.alphabet, asked);
     }
     let one = goingOn(last, asked, now);
+    let continues = false;
     if (one !== asked && last !== null && one.start === last.start) {
-      begun.add(one.id);
-      on.add(one.id);
+      continues = true;
       said = said.filter((s) => s.id !== one.id || s.start < one.start);
       if (last === before) {
+        begun.add(one.id);
         said.push(...track.speeches.filter((s) => s.id === one.id && s !== last));
       }
-    } else if (one === asked && !taken) {
-      one = behind([...track.speeches, ...said], asked, now);
-      const opens = last !== null && takesMore(last) && told.line === null && one.start <= now;
-      if (one !== asked || opens) {
-        on.add(one.id);
-      }
+    } else if (one === asked && last !== null) {
+      const same = [...track.speeches, ...said].filter((s) => s.id === last.id && s.asked === last.asked);
+      one = behind(same, asked, now);
+      continues = one !== asked || (takesMore(last) && told.line === null && one.start <= now);
+    }
+    const over = last !== null && last.end <= present && !takesMore(last);
+    const since = findAsked(track, last, continues && !over, one.id, soon);
+    if (!continues) { // it replaces what was asked for at the same time
+      said = said.filter((s) => s.id !== one.id);
+      begun = _without(begun, one.id);
+      on = _without(on, one.id);
+    }
+    if (before !== null && since === before.asked) {
+      on.add(one.id);
     }
     if (one.start !== told.start) {
       later.set(one.id, one.start - told.start);
     }
-    if (one === asked && !on.has(one.id) && track.lastSpeech(one.id) !== null) {
+    if (!continues && !on.has(one.id) && track.lastSpeech(one.id) !== null) {
       anew.add(one.id);
     }
-    said.push(one);
+    said.push(but(one, { asked: since }));
   }
   const opened = new Set(said.filter((s) => s.more).map((s) => s.id));
   const moods = [];
@@ -275,6 +294,39 @@ export function addSpeeches(meant, track, soon) {
     moods.push(new MoodFrom(m.id, m.start + by, m.valence, m.arousal, m.intensity, end));
   }
   return new AddedSpeeches(said, begun, on, anew, moods);
+}
+
+/**
+ * @param {Set<string>} idents
+ * @param {string} ident
+ * @returns {Set<string>}
+ */
+function _without(idents, ident) {
+  const left = new Set([]);
+  for (const other of idents) {
+    if (other !== ident) {
+      left.add(other);
+    }
+  }
+  return left;
+}
+
+/**
+ * Return when the utterance of a new piece was asked for. last: the piece before it, None if that is taken back; continues:
+ * whether the new one goes on from it.
+ * @param {Track} track
+ * @param {?Speech} last
+ * @param {boolean} continues
+ * @param {string} ident
+ * @param {number} soon
+ * @returns {number}
+ */
+export function findAsked(track, last, continues, ident, soon) {
+  if (last !== null && continues) {
+    return last.asked;
+  }
+  const known = last === null ? track.lastSpeech(ident) : last;
+  return known === null ? soon : Math.max(soon, known.asked + TOGETHER);
 }
 
 /**

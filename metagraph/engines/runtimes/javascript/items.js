@@ -39,10 +39,11 @@ export class LookAt {
  * Something said. line: id of the project's line, None for `text` alone. priority: a higher one interrupts a lower one.
  * length: seconds that all of it would have taken, if it was cut short. timing: the times of its words and mouth shapes, if
  * known. skip: seconds of it that were said before a pause. more: whether more of it may come, so that it is not over when
- * it falls silent. over: when it was finished, if it had fallen silent before.
+ * it falls silent. over: when it was finished, if it had fallen silent before. asked: when the first piece of its utterance
+ * was asked for, which all its pieces share and no other utterance of its id has.
  *
  * id: string; start: number; end: number; line: ?string; text: string; priority: number; length: ?number; timing:
- * ?LineTiming; skip: number; more: boolean; over: ?number.
+ * ?LineTiming; skip: number; more: boolean; over: ?number; asked: number.
  */
 export class Speech {
   constructor(
@@ -57,6 +58,7 @@ export class Speech {
     skip = 0,
     more = false,
     over = null,
+    asked = 0,
   ) {
     this.id = id;
     this.start = start;
@@ -69,6 +71,7 @@ export class Speech {
     this.skip = skip;
     this.more = more;
     this.over = over;
+    this.asked = asked;
   }
 }
 
@@ -200,7 +203,8 @@ export function behind(said, new_, now) {
   }
   let end = new_.start;
   for (const speech of said) {
-    const plain = speech.timing === null && speech.line === null && speech.length === null;
+    const paced = speech.timing === null || speech.timing.paced;
+    const plain = paced && speech.line === null && speech.length === null;
     if (speech.id === new_.id && plain && speech.start <= end && end < speech.end) {
       end = speech.end;
     }
@@ -306,7 +310,7 @@ function _sameSpeech(a, b) {
   if (a.line !== b.line || a.text !== b.text || a.length !== b.length || a.priority !== b.priority) {
     return false;
   }
-  if (a.skip !== b.skip || a.more !== b.more || a.over !== b.over) {
+  if (a.skip !== b.skip || a.more !== b.more || a.over !== b.over || a.asked !== b.asked) {
     return false;
   }
   return a.id === b.id && a.start === b.start && a.end === b.end && alikeTimings(a.timing, b.timing);

@@ -6,7 +6,7 @@
 
 import { findLineStart, measureLine } from "./items.js";
 import { SpokenWord } from "./line_timing.js";
-import { isPaused, isSameUtterance } from "./utterances.js";
+import { isPaused } from "./utterances.js";
 import { telling, wordsOf } from "./word_gestures.js";
 
 /**
@@ -49,7 +49,7 @@ function _pieces(said, ident, seconds) {
     if (piece.id !== ident || piece.start >= seconds || isPaused(piece.start)) {
       continue;
     }
-    if (out.length > 0 && !isSameUtterance(out[out.length - 1], piece)) {
+    if (out.length > 0 && out[out.length - 1].asked !== piece.asked) {
       out = [];
     } else if (out.length > 0 && piece.skip > 0) {
       out.pop();

@@ -138,6 +138,7 @@ export function findSlot(track) {
  * @returns {Track}
  */
 export function breakOff(track, ident, stop) {
+  const last = track.lastSpeech(ident);
   const speeches = [];
   for (const speech of track.speeches) {
     if (speech.id !== ident || speech.end <= stop) {
@@ -146,7 +147,7 @@ export function breakOff(track, ident, stop) {
       speeches.push(cut(speech, stop));
     }
   }
-  return _closed(track, speeches, ident, stop, true);
+  return last === null ? track : _closed(track, speeches, last, stop, true);
 }
 
 /**
@@ -157,24 +158,26 @@ export function breakOff(track, ident, stop) {
  * @returns {Track}
  */
 export function finishSpeech(track, ident, soon) {
-  return _closed(track, [...track.speeches], ident, soon, false);
+  const last = track.lastSpeech(ident);
+  return last === null ? track : _closed(track, [...track.speeches], last, soon, false);
 }
 
 /**
- * Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it was broken off.
+ * Return the track with these speeches, in which an utterance expects no more pieces. of: its last piece before. cuts:
+ * whether it was broken off.
  * @param {Track} track
  * @param {Speech[]} speeches
- * @param {string} ident
+ * @param {Speech} of
  * @param {number} now
  * @param {boolean} cuts
  * @returns {Track}
  */
-function _closed(track, speeches, ident, now, cuts) {
+function _closed(track, speeches, of, now, cuts) {
   const out = [...speeches];
   let end = now;
   for (const n of [...range(out.length)].reverse()) {
     const last = out[n];
-    if (last.id !== ident) {
+    if (last.id !== of.id || last.asked !== of.asked) {
       continue;
     }
     const held = cuts && last.length !== null; // it was paused
@@ -184,7 +187,7 @@ function _closed(track, speeches, ident, now, cuts) {
     end = Math.max(last.end, now);
     break;
   }
-  const moods = track.moods.map((m) => (m.id === ident && m.end === PAUSED) ? _until(m, end) : m);
+  const moods = track.moods.map((m) => (m.id === of.id && m.end === PAUSED) ? _until(m, end) : m);
   return new Track(track.looks, [...out], track.modes, track.places, track.blinks, track.stays, [...moods]);
 }
 
@@ -224,7 +227,7 @@ export function pause(track, ident, made, stop, slot) {
   }
   const last = track.lastSpeech(ident);
   if (held.length === 0 && last !== null && last.more && last.start < PAUSED) {
-    held.push(new Speech(ident, slot, slot, null, "", last.priority, null, null, 0, true));
+    held.push(new Speech(ident, slot, slot, null, "", last.priority, null, null, 0, true, null, last.asked));
   }
   if (held.length === 0) {
     return track;
@@ -306,24 +309,14 @@ function _moved(track, speeches, made, low, high, by) {
  */
 export function explainEnd(speeches, speech) {
   const coming = speeches.find((s) => s.id === speech.id && s.start > speech.start) ?? null;
-  if (speech.more || (coming !== null && isSameUtterance(speech, coming))) {
+  if (coming !== null && coming.asked === speech.asked) {
     return "";
+  }
+  if (speech.more) {
+    return coming === null ? "" : "replaced";
   }
   if (speech.length === null) {
     return "finished";
   }
   return (coming === null || coming.start > speech.end + TOGETHER) ? "interrupted" : "replaced";
-}
-
-/**
- * Return whether a later piece of the same id continues an earlier one.
- * @param {Speech} one
- * @param {Speech} other
- * @returns {boolean}
- */
-export function isSameUtterance(one, other) {
-  if (one.more || (other.skip > 0 && one.length !== null && one.over === null)) {
-    return true;
-  }
-  return one.length === null && (other.start >= PAUSED || other.start - one.end < TOGETHER);
 }

@@ -53,6 +53,7 @@ namespace Metagraph
         private readonly Dictionary<string, List<object>> streaming = new Dictionary<string, List<object>>(); // shapes of this update
         private List<CharacterEvent> events = new List<CharacterEvent>();
         private int count;
+        private readonly SpeechWatch speech = new SpeechWatch();
         private double seen = double.NegativeInfinity, cutAt;
 
         public Character(Graph graph, CharacterOptions options = null)
@@ -258,24 +259,12 @@ namespace Metagraph
                     Note(cues[n].Start, cues[n].End, layer, cues[n].Action.Name, cues[n].Meta);
                 }
             }
-            for (int n = 0; n < Plan.Track.Speeches.Count; n++)
+            foreach (SpeechEvent one in speech.Watch(Plan.Track.Speeches, seen, Now))
             {
-                Speech speech = Plan.Track.Speeches[n];
-                double last = Math.Max(speech.End, speech.Over ?? speech.End);
-                if (last <= seen || speech.Start > Now)
+                Insert(new CharacterEvent
                 {
-                    continue;
-                }
-                string reason = speech.End > Now ? "" : UtterancesRules.ExplainEnd(Plan.Track.Speeches, speech);
-                string said = speech.Line ?? speech.Text;
-                Note(speech.Start, speech.End, "speech", said, speech.Id, speech.Over == null ? reason : "");
-                if (speech.Over > seen && speech.Over <= Now)
-                {
-                    Insert(new CharacterEvent
-                    {
-                        Kind = "end", Layer = "speech", Action = said, Meta = speech.Id, At = speech.Over.Value, Reason = reason,
-                    });
-                }
+                    Kind = one.Kind, Layer = "speech", Action = one.Said, Meta = one.Id, At = one.At, Reason = one.Reason,
+                });
             }
             seen = Now;
             if (events.Count > Remembered)
@@ -284,19 +273,19 @@ namespace Metagraph
             }
         }
 
-        private void Note(double start, double end, string layer, string action, string key, string reason = "")
+        private void Note(double start, double end, string layer, string action, string key)
         {
             bool begins = start > seen && start <= Now, ends = end > seen && end <= Now;
             if (begins || ends)
             {
-                string meta = layer == "speech" ? key : key.Split('+')[0]; // what goes on after a cut is the same
+                string meta = key.Split('+')[0]; // what goes on after a cut is the same
                 if (begins)
                 {
                     Insert(new CharacterEvent { Kind = "begin", Layer = layer, Action = action, Meta = meta, At = start, Reason = "" });
                 }
                 if (ends)
                 {
-                    Insert(new CharacterEvent { Kind = "end", Layer = layer, Action = action, Meta = meta, At = end, Reason = reason });
+                    Insert(new CharacterEvent { Kind = "end", Layer = layer, Action = action, Meta = meta, At = end, Reason = "" });
                 }
             }
         }

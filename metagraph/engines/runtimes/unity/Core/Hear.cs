@@ -26,7 +26,7 @@ namespace Metagraph
             double soon = UtterancesRules.FindSoon(now, graph.Settings.Lookahead);
             Meaning meant = Understood.From(graph, asks, begins, soon);
             List<string> turning = Basics.Layers.Where(layer => graph.Layers[layer].Markov.Modes.Count > 0).ToList();
-            Heard heard = HearingRules.Heard(plan.Requests, plan.Track, meant, begins, soon, turning);
+            Heard heard = HearingRules.Heard(plan.Requests, plan.Track, meant, now, begins, soon, turning);
             bool partly = asks.Count > 0 && now > 0 && end == plan.End;
             string[] leave = partly ? Basics.Layers.Where(layer => !heard.Touched.Contains(layer)).ToArray() : Basics.None;
             plan = plan.With(heard.Track);

@@ -68,7 +68,7 @@ namespace Metagraph
         /// </summary>
         public Track Leave(Track track)
         {
-            if (On.Count == 0)
+            if (On.Count == 0 && Begun.Count == 0)
             {
                 return track;
             }
@@ -306,13 +306,14 @@ namespace Metagraph
 
         /// <summary>
         /// Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it.
-        /// now: everything that begins earlier stays; soon: the same for voices. turning: layers whose models perform differently
-        /// in different modes.
+        /// present: when they became known. now: everything that begins earlier stays; soon: the same for voices. turning: layers
+        /// whose models perform differently in different modes.
         /// </summary>
         public static Heard Heard(
             List<MetaRequest> requests,
             Track track,
             Meaning meant,
+            double present,
             double now,
             double soon,
             List<string> turning
@@ -332,7 +333,7 @@ namespace Metagraph
             {
                 gone.Add(ident);
             }
-            var words = AddSpeeches(meant, track, soon);
+            var words = AddSpeeches(meant, track, present, soon);
             var before = requests.Select(r => r.Id).ToList();
             before.AddRange(track.Idents());
             // A client that takes everything back keeps the look at the user.
@@ -420,6 +421,14 @@ namespace Metagraph
                 }
             }
             left = words.Leave(left.Without(over, now));
+            foreach (string ident in over)
+            {
+                var open = left.LastSpeech(ident);
+                if (open != null && open.More) // something else takes its place
+                {
+                    left = UtterancesRules.FinishSpeech(left, ident, soon);
+                }
+            }
             var lasting = new Track(
                 more.Looks,
                 words.Said.ToList(),
@@ -434,9 +443,10 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the effect of asks to say something on a track: a new line, a line after another, or more of one.
+        /// Return the effect of asks to say something on a track: a new line, a line after another, or more of one. present: what
+        /// ended by then is over, and its end was reported; more of it begins a new utterance.
         /// </summary>
-        public static AddedSpeeches AddSpeeches(Meaning meant, Track track, double soon)
+        public static AddedSpeeches AddSpeeches(Meaning meant, Track track, double present, double soon)
         {
             var said = new List<Speech>();
             var begun = new HashSet<string>();
@@ -464,7 +474,8 @@ namespace Metagraph
                         told.Timing,
                         told.Skip,
                         told.More,
-                        told.Over
+                        told.Over,
+                        told.Asked
                     );
                 }
                 var paces = told.More || (last != null && last.More);
@@ -473,34 +484,57 @@ namespace Metagraph
                     asked = ItemsRules.PaceSpeech(meant.Alphabet, asked);
                 }
                 var one = ItemsRules.GoingOn(last, asked, now);
+                var continues = false;
                 if (one != asked && last != null && one.Start == last.Start)
                 {
-                    begun.Add(one.Id);
-                    on.Add(one.Id);
+                    continues = true;
                     said = said.Where(s => s.Id != one.Id || s.Start < one.Start).ToList();
                     if (last == before)
                     {
+                        begun.Add(one.Id);
                         said.AddRange(track.Speeches.Where(s => s.Id == one.Id && s != last).ToList());
                     }
                 }
-                else if (one == asked && !taken)
+                else if (one == asked && last != null)
                 {
-                    one = ItemsRules.Behind(track.Speeches.Concat(said).ToList(), asked, now);
-                    var opens = last != null && UtterancesRules.TakesMore(last) && told.Line == null && one.Start <= now;
-                    if (one != asked || opens)
-                    {
-                        on.Add(one.Id);
-                    }
+                    var same = track.Speeches.Concat(said).ToList().Where(s => s.Id == last.Id && s.Asked == last.Asked).ToList();
+                    one = ItemsRules.Behind(same, asked, now);
+                    continues = one != asked || (UtterancesRules.TakesMore(last) && told.Line == null && one.Start <= now);
+                }
+                var over = last != null && last.End <= present && !UtterancesRules.TakesMore(last);
+                var since = FindAsked(track, last, continues && !over, one.Id, soon);
+                if (!continues) // it replaces what was asked for at the same time
+                {
+                    said = said.Where(s => s.Id != one.Id).ToList();
+                    begun = Without(begun, one.Id);
+                    on = Without(on, one.Id);
+                }
+                if (before != null && since == before.Asked)
+                {
+                    on.Add(one.Id);
                 }
                 if (one.Start != told.Start)
                 {
                     later[one.Id] = one.Start - told.Start;
                 }
-                if (one == asked && !on.Contains(one.Id) && track.LastSpeech(one.Id) != null)
+                if (!continues && !on.Contains(one.Id) && track.LastSpeech(one.Id) != null)
                 {
                     anew.Add(one.Id);
                 }
-                said.Add(one);
+                said.Add(new Speech(
+                    one.Id,
+                    one.Start,
+                    one.End,
+                    one.Line,
+                    one.Text,
+                    one.Priority,
+                    one.Length,
+                    one.Timing,
+                    one.Skip,
+                    one.More,
+                    one.Over,
+                    since
+                ));
             }
             var opened = new HashSet<string>(said.Where(s => s.More).Select(s => s.Id));
             var moods = new List<MoodFrom>();
@@ -511,6 +545,33 @@ namespace Metagraph
                 moods.Add(new MoodFrom(m.Id, m.Start + by, m.Valence, m.Arousal, m.Intensity, end));
             }
             return new AddedSpeeches(said, begun, on, anew, moods);
+        }
+
+        private static HashSet<string> Without(HashSet<string> idents, string ident)
+        {
+            var left = new HashSet<string>();
+            foreach (string other in idents)
+            {
+                if (other != ident)
+                {
+                    left.Add(other);
+                }
+            }
+            return left;
+        }
+
+        /// <summary>
+        /// Return when the utterance of a new piece was asked for. last: the piece before it, None if that is taken back;
+        /// continues: whether the new one goes on from it.
+        /// </summary>
+        public static double FindAsked(Track track, Speech last, bool continues, string ident, double soon)
+        {
+            if (last != null && continues)
+            {
+                return last.Asked;
+            }
+            var known = last == null ? track.LastSpeech(ident) : last;
+            return known == null ? soon : Math.Max(soon, known.Asked + UtterancesRules.Together);
         }
 
         /// <summary>

@@ -34,7 +34,8 @@ namespace Metagraph
     /// Something said. line: id of the project's line, None for `text` alone. priority: a higher one interrupts a lower one.
     /// length: seconds that all of it would have taken, if it was cut short. timing: the times of its words and mouth shapes, if
     /// known. skip: seconds of it that were said before a pause. more: whether more of it may come, so that it is not over when
-    /// it falls silent. over: when it was finished, if it had fallen silent before.
+    /// it falls silent. over: when it was finished, if it had fallen silent before. asked: when the first piece of its utterance
+    /// was asked for, which all its pieces share and no other utterance of its id has.
     /// </summary>
     public sealed class Speech
     {
@@ -49,6 +50,7 @@ namespace Metagraph
         public readonly double Skip;
         public readonly bool More;
         public readonly double? Over;
+        public readonly double Asked;
 
         public Speech(
             string id,
@@ -61,7 +63,8 @@ namespace Metagraph
             LineTiming timing = null,
             double skip = 0.0,
             bool more = false,
-            double? over = null
+            double? over = null,
+            double asked = 0.0
         )
         {
             Id = id;
@@ -75,6 +78,7 @@ namespace Metagraph
             Skip = skip;
             More = more;
             Over = over;
+            Asked = asked;
         }
     }
 
@@ -179,7 +183,8 @@ namespace Metagraph
                     speech.Timing,
                     speech.Skip,
                     speech.More,
-                    speech.Over
+                    speech.Over,
+                    speech.Asked
                 );
         }
 
@@ -223,7 +228,8 @@ namespace Metagraph
                             Cut(last, speech.Start).Timing,
                             Cut(last, speech.Start).Skip,
                             false,
-                            Cut(last, speech.Start).Over
+                            Cut(last, speech.Start).Over,
+                            Cut(last, speech.Start).Asked
                         ));
                     }
                 }
@@ -244,7 +250,8 @@ namespace Metagraph
             var end = new_.Start;
             foreach (Speech speech in said)
             {
-                var plain = speech.Timing == null && speech.Line == null && speech.Length == null;
+                var paced = speech.Timing == null || speech.Timing.Paced;
+                var plain = paced && speech.Line == null && speech.Length == null;
                 if (speech.Id == new_.Id && plain && speech.Start <= end && end < speech.End)
                 {
                     end = speech.End;
@@ -263,7 +270,8 @@ namespace Metagraph
                     new_.Timing,
                     new_.Skip,
                     new_.More,
-                    new_.Over
+                    new_.Over,
+                    new_.Asked
                 );
         }
 
@@ -307,7 +315,8 @@ namespace Metagraph
                 timing,
                 old.Skip,
                 new_.More,
-                new_.Over
+                new_.Over,
+                new_.Asked
             );
         }
 
@@ -327,7 +336,8 @@ namespace Metagraph
                 timing,
                 new_.Skip,
                 new_.More,
-                new_.Over
+                new_.Over,
+                new_.Asked
             );
         }
 
@@ -354,7 +364,8 @@ namespace Metagraph
                 timing,
                 old.Skip,
                 new_.More,
-                new_.Over
+                new_.Over,
+                new_.Asked
             );
         }
 
@@ -386,7 +397,7 @@ namespace Metagraph
             {
                 return false;
             }
-            if (a.Skip != b.Skip || a.More != b.More || a.Over != b.Over)
+            if (a.Skip != b.Skip || a.More != b.More || a.Over != b.Over || a.Asked != b.Asked)
             {
                 return false;
             }

@@ -51,7 +51,7 @@ namespace Metagraph
                 {
                     continue;
                 }
-                if (out_.Count > 0 && !UtterancesRules.IsSameUtterance(out_[out_.Count - 1], piece))
+                if (out_.Count > 0 && out_[out_.Count - 1].Asked != piece.Asked)
                 {
                     out_ = new List<Speech>();
                 }

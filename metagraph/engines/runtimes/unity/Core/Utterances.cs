@@ -122,6 +122,7 @@ namespace Metagraph
         /// <summary>Return the track with an utterance ended at `stop`: its later pieces are not said.</summary>
         public static Track BreakOff(Track track, string ident, double stop)
         {
+            var last = track.LastSpeech(ident);
             var speeches = new List<Speech>();
             foreach (Speech speech in track.Speeches)
             {
@@ -134,26 +135,28 @@ namespace Metagraph
                     speeches.Add(ItemsRules.Cut(speech, stop));
                 }
             }
-            return Closed(track, speeches, ident, stop, true);
+            return last == null ? track : Closed(track, speeches, last, stop, true);
         }
 
         /// <summary>Return the track with an utterance that is over once all its known pieces are said.</summary>
         public static Track FinishSpeech(Track track, string ident, double soon)
         {
-            return Closed(track, track.Speeches.ToList(), ident, soon, false);
+            var last = track.LastSpeech(ident);
+            return last == null ? track : Closed(track, track.Speeches.ToList(), last, soon, false);
         }
 
         /// <summary>
-        /// Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it was broken off.
+        /// Return the track with these speeches, in which an utterance expects no more pieces. of: its last piece before. cuts:
+        /// whether it was broken off.
         /// </summary>
-        private static Track Closed(Track track, List<Speech> speeches, string ident, double now, bool cuts)
+        private static Track Closed(Track track, List<Speech> speeches, Speech of, double now, bool cuts)
         {
             var out_ = speeches.ToList();
             var end = now;
             foreach (int n in PlainNumbers.Range(out_.Count).AsEnumerable().Reverse().ToList())
             {
                 var last = out_[n];
-                if (last.Id != ident)
+                if (last.Id != of.Id || last.Asked != of.Asked)
                 {
                     continue;
                 }
@@ -171,12 +174,13 @@ namespace Metagraph
                     last.Timing,
                     last.Skip,
                     false,
-                    silent ? now : last.Over
+                    silent ? now : last.Over,
+                    last.Asked
                 );
                 end = Math.Max(last.End, now);
                 break;
             }
-            var moods = track.Moods.Select(m => (m.Id == ident && m.End == Paused) ? Until(m, end) : m).ToList();
+            var moods = track.Moods.Select(m => (m.Id == of.Id && m.End == Paused) ? Until(m, end) : m).ToList();
             return new Track(track.Looks, out_.ToList(), track.Modes, track.Places, track.Blinks, track.Stays, moods.ToList());
         }
 
@@ -213,7 +217,8 @@ namespace Metagraph
                         ItemsRules.Cut(speech, stop).Timing,
                         ItemsRules.Cut(speech, stop).Skip,
                         false,
-                        ItemsRules.Cut(speech, stop).Over
+                        ItemsRules.Cut(speech, stop).Over,
+                        ItemsRules.Cut(speech, stop).Asked
                     ));
                     var skip = stop - ItemsRules.FindLineStart(speech);
                     held.Add(new Speech(
@@ -227,7 +232,8 @@ namespace Metagraph
                         speech.Timing,
                         skip,
                         speech.More,
-                        speech.Over
+                        speech.Over,
+                        speech.Asked
                     ));
                 }
                 else
@@ -243,14 +249,15 @@ namespace Metagraph
                         speech.Timing,
                         speech.Skip,
                         speech.More,
-                        speech.Over
+                        speech.Over,
+                        speech.Asked
                     ));
                 }
             }
             var last = track.LastSpeech(ident);
             if (held.Count == 0 && last != null && last.More && last.Start < Paused)
             {
-                held.Add(new Speech(ident, slot, slot, null, "", last.Priority, null, null, 0.0, true));
+                held.Add(new Speech(ident, slot, slot, null, "", last.Priority, null, null, 0.0, true, null, last.Asked));
             }
             if (held.Count == 0)
             {
@@ -292,7 +299,8 @@ namespace Metagraph
                 s.Timing,
                 s.Skip,
                 s.More,
-                s.Over
+                s.Over,
+                s.Asked
             )).ToList();
             var end = held[held.Count - 1].More ? Paused : held[held.Count - 1].End + by;
             var moods = track.Moods.Select(m => (m.Id == ident && m.End == Paused) ? Until(m, end) : m).ToList();
@@ -365,25 +373,19 @@ namespace Metagraph
         public static string ExplainEnd(List<Speech> speeches, Speech speech)
         {
             var coming = speeches.Where(s => s.Id == speech.Id && s.Start > speech.Start).FirstOrDefault();
-            if (speech.More || (coming != null && IsSameUtterance(speech, coming)))
+            if (coming != null && coming.Asked == speech.Asked)
             {
                 return "";
+            }
+            if (speech.More)
+            {
+                return coming == null ? "" : "replaced";
             }
             if (speech.Length == null)
             {
                 return "finished";
             }
             return (coming == null || coming.Start > speech.End + Together) ? "interrupted" : "replaced";
-        }
-
-        /// <summary>Return whether a later piece of the same id continues an earlier one.</summary>
-        public static bool IsSameUtterance(Speech one, Speech other)
-        {
-            if (one.More || (other.Skip > 0 && one.Length != null && one.Over == null))
-            {
-                return true;
-            }
-            return one.Length == null && (other.Start >= Paused || other.Start - one.End < Together);
         }
     }
 }

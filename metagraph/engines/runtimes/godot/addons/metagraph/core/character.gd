@@ -9,6 +9,7 @@ const Hear = preload("hear.gd")
 const Items = preload("items.gd")
 const Planner = preload("planner.gd")
 const Pose = preload("pose.gd")
+const SpeechWatch = preload("speech_watch.gd")
 const SpokenSoFar = preload("spoken_so_far.gd")
 const StreamedVoice = preload("streamed_voice.gd")
 const Utterances = preload("utterances.gd")
@@ -33,6 +34,7 @@ var _settled = {}  # answers of those it has forgotten or never heard of
 var _sounds = {}  # of lines that are heard, by their ids
 var _count = 0
 var _forgot_at = 0.0
+var _speech = SpeechWatch.SpeechWatch.new()
 var _seen = -1.0  # when the update before was
 var _events = []
 var _pose = null
@@ -190,26 +192,19 @@ func _listen():
 				break
 			if cue.end > _seen and (cue.start > _seen or cue.end <= now):
 				_note(new, cue.start, cue.end, layer, cue.action.name, cue.meta.split("+")[0])  # what goes on after a cut is the same
-	for speech in plan.track.speeches:
-		var over = speech.end if speech.over == null else speech.over
-		if Util.most(speech.end, over) <= _seen or speech.start > now:
-			continue
-		var said = speech.text if speech.line == null else speech.line
-		var reason = "" if speech.end > now else Utterances.explain_end(plan.track.speeches, speech)
-		_note(new, speech.start, speech.end, "speech", said, speech.id, reason if speech.over == null else "")
-		if speech.over != null and over > _seen and over <= now:
-			new.append({kind = "end", at = over, layer = "speech", action = said, meta = speech.id, reason = reason})
+	for event in _speech.watch(plan.track.speeches, _seen, now):
+		new.append({kind = event.kind, at = event.at, layer = "speech", action = event.said, meta = event.id, reason = event.reason})
 	_seen = now
 	if new.size() > 0:
 		_events += Util.by(new, "at")
 		_events = Util.part(_events, Util.most(0, _events.size() - REMEMBERED), _events.size())
 
 
-func _note(into, start, end, layer, action, meta, reason = ""):
+func _note(into, start, end, layer, action, meta):
 	if start > _seen and start <= now:
 		into.append({kind = "begin", at = start, layer = layer, action = action, meta = meta, reason = ""})
 	if end > _seen and end <= now:
-		into.append({kind = "end", at = end, layer = layer, action = action, meta = meta, reason = reason})
+		into.append({kind = "end", at = end, layer = layer, action = action, meta = meta, reason = ""})
 
 
 # Returns what became of a request: {id, state: planned, late, done or refused, at, until: seconds or null, what: names of what plays, why}.

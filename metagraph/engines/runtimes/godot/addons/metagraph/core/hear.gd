@@ -18,7 +18,7 @@ static func hear(graph, plan, now, asks, end, stances, idle):
 	for layer in Util.LAYERS:
 		if graph.layers[layer].markov.modes.size() > 0:
 			turning.append(layer)
-	var heard = Hearing.heard(plan.requests, plan.track, meant, fixed, soon, turning)
+	var heard = Hearing.heard(plan.requests, plan.track, meant, now, fixed, soon, turning)
 	var leave = []
 	if asks.size() > 0 and now > 0 and end == plan.end:
 		for layer in Util.LAYERS:

@@ -60,10 +60,10 @@ static func makers(ident):
 	return out
 
 
-# Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it. now:
-# everything that begins earlier stays; soon: the same for voices. turning: layers whose models perform differently in different
-# modes.
-static func heard(requests, track, meant, now, soon, turning):
+# Return the effect of asks. requests, track: of the plan. meant: the meaning of the asks; speeches may overlap in it. present:
+# when they became known. now: everything that begins earlier stays; soon: the same for voices. turning: layers whose models
+# perform differently in different modes.
+static func heard(requests, track, meant, present, now, soon, turning):
 	var more = meant.track()
 	var gone = Util.set_of(meant.withdrawn)
 	for report in meant.refused:
@@ -72,7 +72,7 @@ static func heard(requests, track, meant, now, soon, turning):
 		Util.add_to(gone, request.id)
 	for ident in more.idents():
 		Util.add_to(gone, ident)
-	var words = add_speeches(meant, track, soon)
+	var words = add_speeches(meant, track, present, soon)
 	var before = []
 	for r in requests:
 		before.append(r.id)
@@ -184,6 +184,10 @@ static func heard(requests, track, meant, now, soon, turning):
 		if not words.on.has(ident):
 			Util.add_to(over, ident)
 	left = words.leave(left.without(over, now))
+	for ident in over:
+		var open_ = left.last_speech(ident)
+		if open_ != null and open_.more:  # something else takes its place
+			left = Utterances.finish_speech(left, ident, soon)
 	var lasting = Track.Track.new(
 		more.looks,
 		Util.list(words.said),
@@ -217,7 +221,7 @@ class AddedSpeeches:
 	# Return the part of a track that stays: moods of speeches that continue last as long as these, unless another mood is
 	# requested.
 	func leave(track):
-		if self.on.size() == 0:
+		if self.on.size() == 0 and self.begun.size() == 0:
 			return track
 		var other = {}
 		for m2 in self.moods:
@@ -247,8 +251,9 @@ class AddedSpeeches:
 		)
 
 
-# Return the effect of asks to say something on a track: a new line, a line after another, or more of one.
-static func add_speeches(meant, track, soon):
+# Return the effect of asks to say something on a track: a new line, a line after another, or more of one. present: what ended by
+# then is over, and its end was reported; more of it begins a new utterance.
+static func add_speeches(meant, track, present, soon):
 	var said = []
 	var begun = {}
 	var on = {}
@@ -278,36 +283,65 @@ static func add_speeches(meant, track, soon):
 				told.timing,
 				told.skip,
 				told.more,
-				told.over
+				told.over,
+				told.asked
 			)
 		var paces = told.more or (last != null and last.more)
 		if paces and asked.timing == null and asked.line == null:
 			asked = Items.pace_speech(meant.alphabet, asked)
 		var one = Items.going_on(last, asked, now)
+		var continues = false
 		if one != asked and last != null and one.start == last.start:
-			Util.add_to(begun, one.id)
-			Util.add_to(on, one.id)
+			continues = true
 			var found = []
 			for s in said:
 				if s.id != one.id or s.start < one.start:
 					found.append(s)
 			said = found
 			if last == before:
+				Util.add_to(begun, one.id)
 				var found2 = []
 				for s in track.speeches:
 					if s.id == one.id and s != last:
 						found2.append(s)
 				Util.extend(said, found2)
-		elif one == asked and not taken:
-			one = Items.behind(track.speeches + said, asked, now)
-			var opens = last != null and Utterances.takes_more(last) and told.line == null and one.start <= now
-			if one != asked or opens:
-				Util.add_to(on, one.id)
+		elif one == asked and last != null:
+			var same = []
+			for s in track.speeches + said:
+				if s.id == last.id and s.asked == last.asked:
+					same.append(s)
+			one = Items.behind(same, asked, now)
+			continues = one != asked or (Utterances.takes_more(last) and told.line == null and one.start <= now)
+		var over = last != null and last.end <= present and not Utterances.takes_more(last)
+		var since = find_asked(track, last, continues and not over, one.id, soon)
+		if not continues:  # it replaces what was asked for at the same time
+			var found3 = []
+			for s in said:
+				if s.id != one.id:
+					found3.append(s)
+			said = found3
+			begun = _without(begun, one.id)
+			on = _without(on, one.id)
+		if before != null and since == before.asked:
+			Util.add_to(on, one.id)
 		if one.start != told.start:
 			later[one.id] = one.start - told.start
-		if one == asked and not on.has(one.id) and track.last_speech(one.id) != null:
+		if not continues and not on.has(one.id) and track.last_speech(one.id) != null:
 			Util.add_to(anew, one.id)
-		said.append(one)
+		said.append(Items.Speech.new(
+			one.id,
+			one.start,
+			one.end,
+			one.line,
+			one.text,
+			one.priority,
+			one.length,
+			one.timing,
+			one.skip,
+			one.more,
+			one.over,
+			since
+		))
 	var opened = {}
 	for s in said:
 		if s.more:
@@ -318,6 +352,23 @@ static func add_speeches(meant, track, soon):
 		var end = Utterances.PAUSED if opened.has(m.id) else m.end + by
 		moods.append(Mood.MoodFrom.new(m.id, m.start + by, m.valence, m.arousal, m.intensity, end))
 	return AddedSpeeches.new(said, begun, on, anew, moods)
+
+
+static func _without(idents, ident):
+	var left = {}
+	for other in idents:
+		if other != ident:
+			Util.add_to(left, other)
+	return left
+
+
+# Return when the utterance of a new piece was asked for. last: the piece before it, None if that is taken back; continues:
+# whether the new one goes on from it.
+static func find_asked(track, last, continues, ident, soon):
+	if last != null and continues:
+		return last.asked
+	var known = track.last_speech(ident) if last == null else last
+	return soon if known == null else Util.most(soon, known.asked + Utterances.TOGETHER)
 
 
 # Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the plan before.

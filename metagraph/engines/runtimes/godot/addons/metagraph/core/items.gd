@@ -30,7 +30,8 @@ class LookAt:
 # Something said. line: id of the project's line, None for `text` alone. priority: a higher one interrupts a lower one. length:
 # seconds that all of it would have taken, if it was cut short. timing: the times of its words and mouth shapes, if known. skip:
 # seconds of it that were said before a pause. more: whether more of it may come, so that it is not over when it falls silent.
-# over: when it was finished, if it had fallen silent before.
+# over: when it was finished, if it had fallen silent before. asked: when the first piece of its utterance was asked for, which
+# all its pieces share and no other utterance of its id has.
 class Speech:
 	var id
 	var start
@@ -43,6 +44,7 @@ class Speech:
 	var skip
 	var more
 	var over
+	var asked
 
 	func _init(
 		id_,
@@ -55,7 +57,8 @@ class Speech:
 		timing_ = null,
 		skip_ = 0.0,
 		more_ = false,
-		over_ = null
+		over_ = null,
+		asked_ = 0.0
 	):
 		self.id = id_
 		self.start = start_
@@ -68,6 +71,7 @@ class Speech:
 		self.skip = skip_
 		self.more = more_
 		self.over = over_
+		self.asked = asked_
 
 
 # The mode from `start` on; None for talking while something is said and idling otherwise.
@@ -146,7 +150,8 @@ static func cut(speech, at):
 		speech.timing,
 		speech.skip,
 		speech.more,
-		speech.over
+		speech.over,
+		speech.asked
 	)
 
 
@@ -178,7 +183,8 @@ static func apart(speeches):
 					cut(last, speech.start).timing,
 					cut(last, speech.start).skip,
 					false,
-					cut(last, speech.start).over
+					cut(last, speech.start).over,
+					cut(last, speech.start).asked
 				))
 		out.append(speech)
 	return out
@@ -190,7 +196,8 @@ static func behind(said, new, now):
 		return new
 	var end = new.start
 	for speech in said:
-		var plain = speech.timing == null and speech.line == null and speech.length == null
+		var paced = speech.timing == null or speech.timing.paced
+		var plain = paced and speech.line == null and speech.length == null
 		if speech.id == new.id and plain and speech.start <= end and end < speech.end:
 			end = speech.end
 	return new if end == new.start else Speech.new(
@@ -204,7 +211,8 @@ static func behind(said, new, now):
 		new.timing,
 		new.skip,
 		new.more,
-		new.over
+		new.over,
+		new.asked
 	)
 
 
@@ -235,7 +243,8 @@ static func going_on(old, new, now):
 		timing,
 		old.skip,
 		new.more,
-		new.over
+		new.over,
+		new.asked
 	)
 
 
@@ -254,7 +263,8 @@ static func pace_speech(alphabet, new):
 		timing,
 		new.skip,
 		new.more,
-		new.over
+		new.over,
+		new.asked
 	)
 
 
@@ -275,7 +285,8 @@ static func _behind_words(old, told, new, more, now):
 		timing,
 		old.skip,
 		new.more,
-		new.over
+		new.over,
+		new.asked
 	)
 
 
@@ -317,7 +328,7 @@ static func alike_speeches(one, other):
 static func _same_speech(a, b):
 	if a.line != b.line or a.text != b.text or a.length != b.length or a.priority != b.priority:
 		return false
-	if a.skip != b.skip or a.more != b.more or a.over != b.over:
+	if a.skip != b.skip or a.more != b.more or a.over != b.over or a.asked != b.asked:
 		return false
 	return a.id == b.id and a.start == b.start and a.end == b.end and LineTiming.alike_timings(a.timing, b.timing)
 

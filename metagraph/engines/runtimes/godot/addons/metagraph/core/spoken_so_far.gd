@@ -36,7 +36,7 @@ static func _pieces(said, ident, seconds):
 	for piece in said:
 		if piece.id != ident or piece.start >= seconds or Utterances.is_paused(piece.start):
 			continue
-		if out.size() > 0 and not Utterances.is_same_utterance(out[-1], piece):
+		if out.size() > 0 and out[-1].asked != piece.asked:
 			out = []
 		elif out.size() > 0 and piece.skip > 0:
 			out.pop_back()

@@ -117,27 +117,30 @@ static func find_slot(track):
 
 # Return the track with an utterance ended at `stop`: its later pieces are not said.
 static func break_off(track, ident, stop):
+	var last = track.last_speech(ident)
 	var speeches = []
 	for speech in track.speeches:
 		if speech.id != ident or speech.end <= stop:
 			speeches.append(speech)
 		elif speech.start < stop:
 			speeches.append(Items.cut(speech, stop))
-	return _closed(track, speeches, ident, stop, true)
+	return track if last == null else _closed(track, speeches, last, stop, true)
 
 
 # Return the track with an utterance that is over once all its known pieces are said.
 static func finish_speech(track, ident, soon):
-	return _closed(track, Util.list(track.speeches), ident, soon, false)
+	var last = track.last_speech(ident)
+	return track if last == null else _closed(track, Util.list(track.speeches), last, soon, false)
 
 
-# Return the track with these speeches, in which an utterance expects no more pieces. cuts: whether it was broken off.
-static func _closed(track, speeches, ident, now, cuts):
+# Return the track with these speeches, in which an utterance expects no more pieces. of: its last piece before. cuts: whether it
+# was broken off.
+static func _closed(track, speeches, of, now, cuts):
 	var out = Util.list(speeches)
 	var end = now
 	for n in Util.backwards(range(out.size())):
 		var last = out[n]
-		if last.id != ident:
+		if last.id != of.id or last.asked != of.asked:
 			continue
 		var held = cuts and last.length != null  # it was paused
 		var silent = last.end < now and (last.more or held)
@@ -153,13 +156,14 @@ static func _closed(track, speeches, ident, now, cuts):
 			last.timing,
 			last.skip,
 			false,
-			now if silent else last.over
+			now if silent else last.over,
+			last.asked
 		)
 		end = Util.most(last.end, now)
 		break
 	var moods = []
 	for m in track.moods:
-		moods.append(_until(m, end) if (m.id == ident and m.end == PAUSED) else m)
+		moods.append(_until(m, end) if (m.id == of.id and m.end == PAUSED) else m)
 	return Track.Track.new(track.looks, Util.list(out), track.modes, track.places, track.blinks, track.stays, Util.list(moods))
 
 
@@ -188,7 +192,8 @@ static func pause(track, ident, made, stop, slot):
 				Items.cut(speech, stop).timing,
 				Items.cut(speech, stop).skip,
 				false,
-				Items.cut(speech, stop).over
+				Items.cut(speech, stop).over,
+				Items.cut(speech, stop).asked
 			))
 			var skip = stop - Items.find_line_start(speech)
 			held.append(Items.Speech.new(
@@ -202,7 +207,8 @@ static func pause(track, ident, made, stop, slot):
 				speech.timing,
 				skip,
 				speech.more,
-				speech.over
+				speech.over,
+				speech.asked
 			))
 		else:
 			held.append(Items.Speech.new(
@@ -216,11 +222,12 @@ static func pause(track, ident, made, stop, slot):
 				speech.timing,
 				speech.skip,
 				speech.more,
-				speech.over
+				speech.over,
+				speech.asked
 			))
 	var last = track.last_speech(ident)
 	if held.size() == 0 and last != null and last.more and last.start < PAUSED:
-		held.append(Items.Speech.new(ident, slot, slot, null, "", last.priority, null, null, 0.0, true))
+		held.append(Items.Speech.new(ident, slot, slot, null, "", last.priority, null, null, 0.0, true, null, last.asked))
 	if held.size() == 0:
 		return track
 	var moods = []
@@ -265,7 +272,8 @@ static func resume(track, ident, made, soon):
 				s.timing,
 				s.skip,
 				s.more,
-				s.over
+				s.over,
+				s.asked
 			))
 	var end = PAUSED if held[-1].more else held[-1].end + by
 	var moods = []
@@ -322,15 +330,10 @@ static func explain_end(speeches, speech):
 			first = s
 			break
 	var coming = first
-	if speech.more or (coming != null and is_same_utterance(speech, coming)):
+	if coming != null and coming.asked == speech.asked:
 		return ""
+	if speech.more:
+		return "" if coming == null else "replaced"
 	if speech.length == null:
 		return "finished"
 	return "interrupted" if (coming == null or coming.start > speech.end + TOGETHER) else "replaced"
-
-
-# Return whether a later piece of the same id continues an earlier one.
-static func is_same_utterance(one, other):
-	if one.more or (other.skip > 0 and one.length != null and one.over == null):
-		return true
-	return one.length == null and (other.start >= PAUSED or other.start - one.end < TOGETHER)
