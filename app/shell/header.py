@@ -7,8 +7,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from html import escape
 
-from PySide6.QtCore import QSize, Qt
-from PySide6.QtGui import QResizeEvent
+from PySide6.QtCore import QEvent, QSize, Qt
+from PySide6.QtGui import QFont, QFontMetrics
 from PySide6.QtWidgets import QLabel, QSizePolicy, QToolBar, QWidget
 
 from app.look.theme import get_theme
@@ -18,6 +18,8 @@ from app.shell.context import HeaderItem
 from app.stage.session import StageSession
 from app.translation import tr
 
+UNSAVED = "•"  # for the words that say so, where they have no room
+SIDES = 18  # pixels beside the name
 NARROW, WIDE = 100, 1600  # pixels of the project's name, and of a window with room for three times that
 
 
@@ -38,7 +40,7 @@ class Header(QToolBar):
         self.setMovable(False)
         self.setIconSize(QSize(18, 18))
         self.name = QLabel(self)
-        self.name.setContentsMargins(6, 0, 12, 0)
+        self.name.setContentsMargins(SIDES // 3, 0, SIDES - SIDES // 3, 0)
         self.name.setTextFormat(Qt.TextFormat.RichText)
         self.addWidget(self.name)
         items = tuple(items)
@@ -64,15 +66,27 @@ class Header(QToolBar):
         dim = get_theme(self.session.look.name).dim
         room = NARROW if self.width() < WIDE else 3 * NARROW
         name = self.name.fontMetrics().elidedText(d.project.name, Qt.TextElideMode.ElideMiddle, room)
-        words = f"<b>{escape(name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>"
         self.name.setToolTip(f"{d.project.name}, {saved}")
+        if not self._has_room(name, saved):
+            saved = "" if d.path is not None and not d.dirty else UNSAVED
+        words = f"<b>{escape(name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>"
         if words != self.name.text():  # rich text is laid out again each time
             self.name.setText(words)
 
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        if (event.size().width() < WIDE) != (event.oldSize().width() < WIDE):
+    def _has_room(self, name: str, saved: str) -> bool:
+        """Return whether the words stand whole beside the other parts, or would press them together."""
+        bold = QFont(self.name.font())
+        bold.setBold(True)
+        wanted = QFontMetrics(bold).horizontalAdvance(f"{name}  ")
+        wanted += self.name.fontMetrics().horizontalAdvance(saved) + SIDES
+        others = self.sizeHint().width() - self.name.sizeHint().width()
+        return others + wanted <= self.width()
+
+    def event(self, event: QEvent) -> bool:
+        out = super().event(event)
+        if event.type() in (QEvent.Type.LayoutRequest, QEvent.Type.Resize):  # a part got other words, or all
             self.refresh()
+        return out
 
 
 def _stretch(parent: QWidget) -> QWidget:

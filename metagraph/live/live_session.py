@@ -256,7 +256,7 @@ class LiveSession:
             notes = tuple(str(phrase("left out: {what}", what=what)) for what in left_out)
             told = ask.words or ask.characters or ask.visemes or ask.audio or ask.line or ask.duration
             if not telling(ALPHABET, text) and not told and not opened:
-                silent = str(phrase("the text has nothing to say"))
+                silent = str(phrase("the text contains no words to say"))
                 return Reply(id=ident, state="done" if ask.more else "refused", why=silent, notes=notes)
             if (ask.more or opened) and not told:  # a piece of words: its blanks count
                 begins = len(ask.text) - len(ask.text.lstrip())

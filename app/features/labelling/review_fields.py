@@ -131,7 +131,7 @@ class ReviewFields(QWidget):
                 PAD + TITLE,
                 below,
                 wide - TITLE - 2 * PAD,
-                min(max(LINE, lines), 3.2 * LINE) if row.reason else 0,
+                max(LINE, lines) if row.reason else 0,
             )
             placed.card = QRectF(0, y, wide, placed.reason.bottom() + PAD - 2 - y)
             self._placed.append(placed)

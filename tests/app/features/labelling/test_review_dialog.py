@@ -568,3 +568,17 @@ def test_why_stances_cannot_be_joined_is_said_and_not_counted_as_a_transition(pr
     dialog._refresh()
     assert dialog.queue.parted.text() == dialog.work.unbridged[0]
     dialog.close()
+
+
+def test_a_long_reason_is_shown_whole(drive, qtbot):
+    from app.features.labelling.review_fields import ReviewFields, ReviewRow
+
+    fields = ReviewFields(drive.session)
+    qtbot.addWidget(fields)
+    heights = []
+    for times in (1, 4, 8):
+        reason = "the arms move, hips and legs do not " * times
+        fields.show_rows([ReviewRow("layer", "Layer", [("arms", "Arms")], "arms", 1.0, reason)], "layer")
+        fields.resize(380, fields.sizeHint().height())
+        heights.append(fields.height())
+    assert heights[0] < heights[1] < heights[2] and heights[2] - heights[1] > 3 * 14
