@@ -852,3 +852,18 @@ def test_nothing_grows_while_agents_ask_on_and_on(sample: Project) -> None:
     after, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert after - before < 50_000 * more, "50 kB a second"
+
+
+@pytest.mark.parametrize("words", [["Late", 0.7, 1.1], ["Late", 0.7, 1.1, "indeed", 3.4, 3.8]])
+def test_words_that_come_after_the_voice_had_stopped_are_all_said(
+    session: LiveSession, words: list[Any]
+) -> None:
+    told = [words[n : n + 3] for n in range(0, len(words), 3)]
+    first = one(session, {"do": "say", "id": "s", "words": [["Hello", 0.1, 0.5]], "more": True})
+    events(session, first["at"] + 1.3)
+    late = one(session, {"do": "say", "id": "s", "words": told})
+    assert late["at"] > session.now
+    (speech,) = session.plan.track.speeches
+    assert speech.text == " ".join(["Hello", *(text for text, *_ in told)])
+    starts = [word.start for word in speech.timing.words]  # type: ignore[union-attr]
+    assert np.diff(starts[1:]) == pytest.approx(np.diff([start for _, start, _ in told]))

@@ -18,6 +18,7 @@ SHAPE = 0.2  # seconds for which the last shape of a line stays
 FARTHEST = 3600.0  # seconds of a line
 AGAIN = 0.1  # a later piece belongs to a line from this many seconds before its last shape on
 SLACK = 0.05  # seconds by which times may exceed the given end
+MISSED = 0.1  # seconds by which a word may come late and only be cut short
 
 # What each viseme of a set shows of the mouth shapes, and how fully.
 OCULUS: dict[str, str] = {
@@ -310,8 +311,8 @@ def shifted(timing: LineTiming, by: float) -> LineTiming:
 
 def place_told(old: LineTiming, new: LineTiming, said: float) -> LineTiming:
     """Return a later piece of a line with the times at which it is said. A piece that counts from its own
-    beginning follows the earlier pieces. A piece that comes too late is said at once, and everything after it
-    is delayed. said: seconds of the line that are over.
+    beginning follows the earlier pieces. A piece that comes too late, because the voice had stopped, is said
+    at once, and everything after it is delayed. said: seconds of the line that are over.
     """
     end = _end_of(old)
     if restarts(old, new, said):
@@ -320,13 +321,21 @@ def place_told(old: LineTiming, new: LineTiming, said: float) -> LineTiming:
     by = 0.0
     if len(old.words) > 0 and len(told.words) > 0:
         words = [word for word in told.words if word.start > old.words[-1].start]
-        if len(words) > 0 and max([_end(word) for word in words]) <= said:
+        if len(words) > 0 and comes_late(words[0].start, max([_end(word) for word in words]), end, said):
             by = max(said, end) - words[0].start
     elif len(old.marks) > 0 and len(told.marks) > 0:
         marks = [mark for mark in told.marks if mark.at > old.marks[-1].at]
-        if len(marks) > 0 and marks[-1].at + SHAPE <= said:
+        if len(marks) > 0 and comes_late(marks[0].at, marks[-1].at + SHAPE, end, said):
             by = max(said, end) - marks[0].at
     return replace(shifted(told, by), later=old.later + by)
+
+
+def comes_late(first: float, last: float, silent: float, said: float) -> bool:
+    """Return whether what is new of a line comes too late: all of it, or its beginning after the voice had
+    stopped. first, last: when it would begin and end; silent: when what was known before ends; said: as for
+    `place_told`.
+    """
+    return last <= said or (first < said - MISSED and silent <= said)
 
 
 def restarts(old: LineTiming, new: LineTiming, said: float) -> bool:

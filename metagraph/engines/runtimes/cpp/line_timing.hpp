@@ -23,6 +23,7 @@ inline constexpr double SHAPE = 0.2; // seconds for which the last shape of a li
 inline constexpr double FARTHEST = 3600.0; // seconds of a line
 inline constexpr double AGAIN = 0.1; // a later piece belongs to a line from this many seconds before its last shape on
 inline constexpr double SLACK = 0.05; // seconds by which times may exceed the given end
+inline constexpr double MISSED = 0.1; // seconds by which a word may come late and only be cut short
 // What each viseme of a set shows of the mouth shapes, and how fully.
 inline const Map<std::string, std::string> OCULUS = Map<std::string, std::string>{
     {"sil", "sil"},
@@ -145,6 +146,7 @@ inline List<double> _ends(const List<Ref<VisemeMark>>& marks);
 inline bool tells_on(const Ref<LineTiming>& old, const Ref<LineTiming>& new_);
 inline Ref<LineTiming> shifted(const Ref<LineTiming>& timing, double by);
 inline Ref<LineTiming> place_told(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said);
+inline bool comes_late(double first, double last, double silent, double said);
 inline bool restarts(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said);
 inline bool _alike(const Ref<SpokenWord>& one, const Ref<SpokenWord>& other);
 inline double _end(const Ref<SpokenWord>& word);
@@ -577,8 +579,8 @@ inline Ref<LineTiming> shifted(const Ref<LineTiming>& timing, double by) {
 }
 
 /// Return a later piece of a line with the times at which it is said. A piece that counts from its own beginning
-/// follows the earlier pieces. A piece that comes too late is said at once, and everything after it is delayed. said:
-/// seconds of the line that are over.
+/// follows the earlier pieces. A piece that comes too late, because the voice had stopped, is said at once, and
+/// everything after it is delayed. said: seconds of the line that are over.
 inline Ref<LineTiming> place_told(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said) {
     double end = line_timing::_end_of(old);
     if (line_timing::restarts(old, new_, said)) {
@@ -604,7 +606,7 @@ inline Ref<LineTiming> place_told(const Ref<LineTiming>& old, const Ref<LineTimi
             for (const auto& word : words) {
                 found.push_back(line_timing::_end(word));
             }
-            holds = lang::max_of(found) <= said;
+            holds = line_timing::comes_late(lang::at(words, 0)->start, lang::max_of(found), end, said);
         }
         if (holds) {
             by = std::max(said, end) - lang::at(words, 0)->start;
@@ -616,7 +618,13 @@ inline Ref<LineTiming> place_told(const Ref<LineTiming>& old, const Ref<LineTimi
                 marks.push_back(mark);
             }
         }
-        if (lang::len(marks) > 0 && lang::at(marks, -1)->at + line_timing::SHAPE <= said) {
+        if (lang::len(marks) > 0
+            && line_timing::comes_late(
+                lang::at(marks, 0)->at,
+                lang::at(marks, -1)->at + line_timing::SHAPE,
+                end,
+                said
+            )) {
             by = std::max(said, end) - lang::at(marks, 0)->at;
         }
     }
@@ -626,6 +634,12 @@ inline Ref<LineTiming> place_told(const Ref<LineTiming>& old, const Ref<LineTimi
         old->later + by,
         line_timing::shifted(told, by)->paced
     );
+}
+
+/// Return whether what is new of a line comes too late: all of it, or its beginning after the voice had stopped. first,
+/// last: when it would begin and end; silent: when what was known before ends; said: as for `place_told`.
+inline bool comes_late(double first, double last, double silent, double said) {
+    return last <= said || (first < said - line_timing::MISSED && silent <= said);
 }
 
 /// Return whether a piece of a line counts its times from 0 again: it lies at the beginning of the line, but does not

@@ -15,6 +15,7 @@ export const SHAPE = 0.2; // seconds for which the last shape of a line stays
 export const FARTHEST = 3600; // seconds of a line
 export const AGAIN = 0.1; // a later piece belongs to a line from this many seconds before its last shape on
 export const SLACK = 0.05; // seconds by which times may exceed the given end
+export const MISSED = 0.1; // seconds by which a word may come late and only be cut short
 // What each viseme of a set shows of the mouth shapes, and how fully.
 export const OCULUS = new Map([
   ["sil", "sil"],
@@ -480,8 +481,8 @@ export function shifted(timing, by) {
 
 /**
  * Return a later piece of a line with the times at which it is said. A piece that counts from its own beginning follows the
- * earlier pieces. A piece that comes too late is said at once, and everything after it is delayed. said: seconds of the line
- * that are over.
+ * earlier pieces. A piece that comes too late, because the voice had stopped, is said at once, and everything after it is
+ * delayed. said: seconds of the line that are over.
  * @param {LineTiming} old
  * @param {LineTiming} new_
  * @param {number} said
@@ -496,16 +497,29 @@ export function placeTold(old, new_, said) {
   let by = 0;
   if (old.words.length > 0 && told.words.length > 0) {
     const words = told.words.filter((word) => word.start > old.words[old.words.length - 1].start);
-    if (words.length > 0 && maxOf(words.map((word) => _end(word))) <= said) {
+    if (words.length > 0 && comesLate(words[0].start, maxOf(words.map((word) => _end(word))), end, said)) {
       by = Math.max(said, end) - words[0].start;
     }
   } else if (old.marks.length > 0 && told.marks.length > 0) {
     const marks = told.marks.filter((mark) => mark.at > old.marks[old.marks.length - 1].at);
-    if (marks.length > 0 && marks[marks.length - 1].at + SHAPE <= said) {
+    if (marks.length > 0 && comesLate(marks[0].at, marks[marks.length - 1].at + SHAPE, end, said)) {
       by = Math.max(said, end) - marks[0].at;
     }
   }
   return but(shifted(told, by), { later: old.later + by });
+}
+
+/**
+ * Return whether what is new of a line comes too late: all of it, or its beginning after the voice had stopped. first, last:
+ * when it would begin and end; silent: when what was known before ends; said: as for `place_told`.
+ * @param {number} first
+ * @param {number} last
+ * @param {number} silent
+ * @param {number} said
+ * @returns {boolean}
+ */
+export function comesLate(first, last, silent, said) {
+  return last <= said || (first < said - MISSED && silent <= said);
 }
 
 /**

@@ -66,6 +66,7 @@ namespace Metagraph
         public const double Farthest = 3600.0; // seconds of a line
         public const double Again = 0.1; // a later piece belongs to a line from this many seconds before its last shape on
         public const double Slack = 0.05; // seconds by which times may exceed the given end
+        public const double Missed = 0.1; // seconds by which a word may come late and only be cut short
         // What each viseme of a set shows of the mouth shapes, and how fully.
         public static readonly Dictionary<string, string> Oculus = new Dictionary<string, string> {
             { "sil", "sil" },
@@ -538,8 +539,8 @@ namespace Metagraph
 
         /// <summary>
         /// Return a later piece of a line with the times at which it is said. A piece that counts from its own beginning follows
-        /// the earlier pieces. A piece that comes too late is said at once, and everything after it is delayed. said: seconds of
-        /// the line that are over.
+        /// the earlier pieces. A piece that comes too late, because the voice had stopped, is said at once, and everything after
+        /// it is delayed. said: seconds of the line that are over.
         /// </summary>
         public static LineTiming PlaceTold(LineTiming old, LineTiming new_, double said)
         {
@@ -558,7 +559,8 @@ namespace Metagraph
             if (old.Words.Count > 0 && told.Words.Count > 0)
             {
                 var words = told.Words.Where(word => word.Start > old.Words[old.Words.Count - 1].Start).ToList();
-                if (words.Count > 0 && PlainNumbers.MaxOf(words.Select(word => End(word)).ToList()) <= said)
+                if (words.Count > 0
+                    && ComesLate(words[0].Start, PlainNumbers.MaxOf(words.Select(word => End(word)).ToList()), end, said))
                 {
                     by = Math.Max(said, end) - words[0].Start;
                 }
@@ -566,12 +568,21 @@ namespace Metagraph
             else if (old.Marks.Count > 0 && told.Marks.Count > 0)
             {
                 var marks = told.Marks.Where(mark => mark.At > old.Marks[old.Marks.Count - 1].At).ToList();
-                if (marks.Count > 0 && marks[marks.Count - 1].At + Shape <= said)
+                if (marks.Count > 0 && ComesLate(marks[0].At, marks[marks.Count - 1].At + Shape, end, said))
                 {
                     by = Math.Max(said, end) - marks[0].At;
                 }
             }
             return new LineTiming(Shifted(told, by).Words, Shifted(told, by).Marks, old.Later + by, Shifted(told, by).Paced);
+        }
+
+        /// <summary>
+        /// Return whether what is new of a line comes too late: all of it, or its beginning after the voice had stopped. first,
+        /// last: when it would begin and end; silent: when what was known before ends; said: as for `place_told`.
+        /// </summary>
+        public static bool ComesLate(double first, double last, double silent, double said)
+        {
+            return last <= said || (first < said - Missed && silent <= said);
         }
 
         /// <summary>

@@ -12,6 +12,7 @@ const SHAPE = 0.2  # seconds for which the last shape of a line stays
 const FARTHEST = 3600.0  # seconds of a line
 const AGAIN = 0.1  # a later piece belongs to a line from this many seconds before its last shape on
 const SLACK = 0.05  # seconds by which times may exceed the given end
+const MISSED = 0.1  # seconds by which a word may come late and only be cut short
 # What each viseme of a set shows of the mouth shapes, and how fully.
 const OCULUS = {
 	"sil": "sil",
@@ -404,8 +405,8 @@ static func shifted(timing, by):
 
 
 # Return a later piece of a line with the times at which it is said. A piece that counts from its own beginning follows the
-# earlier pieces. A piece that comes too late is said at once, and everything after it is delayed. said: seconds of the line that
-# are over.
+# earlier pieces. A piece that comes too late, because the voice had stopped, is said at once, and everything after it is delayed.
+# said: seconds of the line that are over.
 static func place_told(old, new, said):
 	var end = _end_of(old)
 	if restarts(old, new, said):
@@ -427,7 +428,7 @@ static func place_told(old, new, said):
 			var found = []
 			for word in words:
 				found.append(_end(word))
-			holds = Util.most_of(found) <= said
+			holds = comes_late(words[0].start, Util.most_of(found), end, said)
 		if holds:
 			by = Util.most(said, end) - words[0].start
 	elif old.marks.size() > 0 and told.marks.size() > 0:
@@ -435,9 +436,15 @@ static func place_told(old, new, said):
 		for mark in told.marks:
 			if mark.at > old.marks[-1].at:
 				marks.append(mark)
-		if marks.size() > 0 and marks[-1].at + SHAPE <= said:
+		if marks.size() > 0 and comes_late(marks[0].at, marks[-1].at + SHAPE, end, said):
 			by = Util.most(said, end) - marks[0].at
 	return LineTiming.new(shifted(told, by).words, shifted(told, by).marks, old.later + by, shifted(told, by).paced)
+
+
+# Return whether what is new of a line comes too late: all of it, or its beginning after the voice had stopped. first, last: when
+# it would begin and end; silent: when what was known before ends; said: as for `place_told`.
+static func comes_late(first, last, silent, said):
+	return last <= said or (first < said - MISSED and silent <= said)
 
 
 # Return whether a piece of a line counts its times from 0 again: it lies at the beginning of the line, but does not repeat it.
