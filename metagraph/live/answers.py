@@ -4,11 +4,11 @@ what is near.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
 
-from metagraph.playback.life.track import Item, LookAt, MoodFrom
+from metagraph.playback.life.track import Item, LookAt, MoodFrom, Speech
 from metagraph.playback.life.utterances import is_paused
 from metagraph.playback.plan import MetaAction, Plan, Report
 from metagraph.playback.planning.extend_performance import find_item_end, find_served, name_item
@@ -59,6 +59,15 @@ class FoundAnswer:
             return self.waits
         return min(self.starts) if self.starts else self.waits if self.state != "refused" else None
 
+    def take_item(self, item: Item) -> None:
+        """Add something of the life layers that was asked for."""
+        if is_paused(item.start):
+            self.waits = item.start
+            return
+        self.starts.append(item.start)
+        self.ends.append(find_item_end(item))
+        self.what.append(name_item(item))
+
     @property
     def at(self) -> float | None:
         return None if self.paused else self.begins
@@ -80,15 +89,21 @@ class FoundAnswer:
         return "nothing came of it" if self.state == "refused" else "chosen when its time is nearer"
 
 
-def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, FoundAnswer]:
+def find(
+    plan: Plan, wanted: Collection[str], since: float = -inf, told: Mapping[str, float] | None = None
+) -> dict[str, FoundAnswer]:
     """Return what a plan holds of asks, for those of which it holds anything. since: seconds before which
-    nothing matters.
+    nothing matters. told: when each was asked for; what began before that belongs to another ask of its id,
+    except for what is said.
     """
     out: dict[str, FoundAnswer] = {}
+    known = told or {}
 
-    def of(ident: str) -> FoundAnswer | None:
+    def of(ident: str, start: float = inf) -> FoundAnswer | None:
         owner = find_owning_ask(ident, wanted)
-        return None if owner is None else out.setdefault(owner, FoundAnswer())
+        if owner is None or start < known.get(owner, -inf):
+            return None
+        return out.setdefault(owner, FoundAnswer())
 
     served = find_served(plan)
     for layer, lane in plan.layers.items():
@@ -96,7 +111,7 @@ def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, 
             if cue.end < since:
                 break
             for made in (cue.meta.partition("+")[0], *served.get(cue.meta, ())):
-                found = of(made)
+                found = of(made, cue.start)
                 if found is not None:
                     found.starts.append(cue.start)
                     found.ends.append(cue.end)
@@ -107,13 +122,9 @@ def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, 
             if found is not None:
                 found.waits, found.layer = meta.start, found.layer or layer
     for item in _near(plan, since):
-        found = of(item.id)
-        if found is not None and is_paused(item.start):
-            found.waits = item.start
-        elif found is not None:
-            found.starts.append(item.start)
-            found.ends.append(find_item_end(item))
-            found.what.append(name_item(item))
+        found = of(item.id, inf if isinstance(item, Speech) else item.start)
+        if found is not None:
+            found.take_item(item)
     for report in plan.reports:
         found = of(report.request)
         if found is not None:

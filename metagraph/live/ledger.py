@@ -50,7 +50,7 @@ def reword_for_client(why: str, client: int) -> str:
 class OpenAsk:
     """An ask that has not ended. ident: its id as its client says it. at: when it begins, as far as known.
     missed: seconds by which it was asked for too late. settled: whether it was answered. ended: whether it
-    was told that it has.
+    was told that it has. told: when it was asked for.
     """
 
     client: int
@@ -63,6 +63,7 @@ class OpenAsk:
     actions: tuple[str, ...] = ()
     missed: float = 0.0
     ended: bool = False
+    told: float = 0.0
 
     @property
     def settled(self) -> bool:

@@ -56,6 +56,7 @@ from metagraph.live.messages import (
 from metagraph.live.partner_mood import LAUGH, MOOD, find_partner_feel
 from metagraph.live.pose_stream import Stream, collect_due_frames
 from metagraph.live.said_sound import SaidSounds, join_asks
+from metagraph.live.said_text import SaidTexts
 from metagraph.live.settling import Settling
 from metagraph.live.steering import Steering, is_steering
 from metagraph.live.tape import Tape
@@ -78,7 +79,6 @@ from metagraph.playback.posing.overlay import Overlay
 from metagraph.playback.posing.weight import LOOKS_BACK
 from metagraph.playback.timing.phases import find_phases
 from metagraph.speech.spoken_so_far import spoken_until
-from metagraph.speech.spoken_text import read_spoken_line
 from metagraph.speech.word_gestures import telling
 
 TIDY = 0.25  # seconds between two clean-ups of what is over
@@ -118,6 +118,7 @@ class LiveSession:
         self._queue: list[tuple[int, HeardMessage | Reply]] = []
         self.tape = Tape()
         self._sounds = SaidSounds()
+        self._texts = SaidTexts()
         self._steering = Steering(project, self.ledger, self.happenings)
         self._tidied = self._begin = 0.0
         self._past: deque[tuple[float, Plan]] = deque()
@@ -247,21 +248,18 @@ class LiveSession:
             return self._withdraw(client, ident, ask, work)
         if isinstance(ask, a.Bml):
             return self._block(client, Open(place, ident, key), ask, work)
-        notes: tuple[str, ...] = ()
         if is_steering(ask):
+            if isinstance(ask, a.Interrupt | a.Finish):
+                self._texts.close(plan_key(client.owner, ask.what), not ask.what)
             return self._steering.answer(client, ident, ask, self.plan, self.now, work)
-        if isinstance(ask, a.Say) and ask.text:
+        notes: tuple[str, ...] = ()
+        if isinstance(ask, a.Say) and (ask.text or self._steering.is_open(self.plan, key, work)):
             opened = self._steering.is_open(self.plan, key, work)
-            text, left_out = read_spoken_line(ask.text)
+            ask, left_out = self._texts.read(key, ask, opened)
             notes = tuple(str(phrase("left out: {what}", what=what)) for what in left_out)
-            told = ask.words or ask.characters or ask.visemes or ask.audio or ask.line or ask.duration
-            if not telling(ALPHABET, text) and not told and not opened:
-                silent = str(phrase("the text contains no words to say"))
-                return Reply(id=ident, state="done" if ask.more else "refused", why=silent, notes=notes)
-            if (ask.more or opened) and not told:  # a piece of words: its blanks count
-                begins = len(ask.text) - len(ask.text.lstrip())
-                text = ask.text[:begins] + text + ask.text[len(ask.text.rstrip()) :]
-            ask = msgspec.structs.replace(ask, text=text)
+            silent = self._answer_silence(client, ident, ask, opened, work)
+            if silent is not None:
+                return msgspec.structs.replace(silent, notes=notes)
         before = work.open.get(key)
         adds = self.plan.track.last_speech(key) if isinstance(ask, a.Say) else None
         waits = self.ledger.known.get(key)
@@ -273,6 +271,21 @@ class LiveSession:
         also = [before, *before.also] if before is not None and before not in work.over else []
         work.open[key] = Open(place, ident, key, notes=notes, adds=adds, replaces=waits, also=also)
         return None
+
+    def _answer_silence(
+        self, client: Client, ident: str, ask: a.Say, opened: bool, work: TickWork
+    ) -> Reply | None:
+        """Return the reply to a text of which nothing is said; None for others. opened: whether it is added
+        to an utterance, whose last mark it may be.
+        """
+        told = ask.words or ask.characters or ask.visemes or ask.audio or ask.line or ask.duration
+        if told or telling(ALPHABET, ask.text) or (opened and ask.text.strip()):
+            return None
+        if opened and not ask.more:  # nothing more comes
+            over = a.Finish(id=ask.id, what=ident, told=self.now, priority=ask.priority)
+            return self._steering.answer(client, ident, over, self.plan, self.now, work)
+        why = str(phrase("the text contains no words to say"))
+        return Reply(id=ident, state="done" if ask.more else "refused", why=why)
 
     def _partner(self, client: Client, message: Partner, work: TickWork, place: int) -> Reply | bytes | None:
         """Take up what the partner feels, or laugh along."""
@@ -359,7 +372,8 @@ class LiveSession:
         ledger.limits.planned[client.number] += 1
         if not isinstance(ask, a.Say):
             self.happenings.stop(key, "replaced")
-        ledger.add(key, OpenAsk(client.owner, ident, lane, ask.priority, wanted, missed=in_time.missed))
+        waits = OpenAsk(client.owner, ident, lane, ask.priority, wanted, missed=in_time.missed, told=self.now)
+        ledger.add(key, waits)
         work.asks[key] = msgspec.structs.replace(ask, id=key)
         return ""
 
@@ -424,7 +438,7 @@ class LiveSession:
         ]
         lasting = [x.id for x in last if x.end > until]
         lasting += self.happenings.list_lasting()
-        lasting = [x for x in dict.fromkeys(lasting) if x not in known]
+        lasting = [x for x in dict.fromkeys(lasting) if x not in known or known[x].ended]
         keys += [
             x
             for x in lasting
@@ -447,6 +461,8 @@ class LiveSession:
 
     def _why_nothing(self, key: str, what: str) -> str:
         """Return why there is nothing to take back under an id."""
+        if any(mode.id == key for mode in self.plan.track.modes[-1:]):
+            return "a mode lasts until another one: ask for 'mode' without a mode"
         ended = key in self.ledger.known and self.ledger.known[key].ended
         return "it has ended" if ended else "nothing waits under that id" if what else "nothing waits"
 
@@ -461,6 +477,7 @@ class LiveSession:
                 work.close(each, "taken back")
                 work.asks.pop(each, None)
             work.asks.pop(key, None)
+            self._texts.close(key)
             work.gone[key] = a.Withdraw(id=key, what=key, told=self.now)
 
     def _block(self, client: Client, open_: Open, ask: a.Bml, work: TickWork) -> Reply | None:

@@ -46,7 +46,8 @@ class Settling:
             for key, ask in self.ledger.known.items()
             if not ask.settled or ask.at > self.now or key in work.turned
         }
-        found = find(self.plan, watched, self.now - 1.0)
+        told = {key: ask.told for key, ask in watched.items()}
+        found = find(self.plan, watched, self.now - 1.0, told)
         steering.stop_paused(work, found)
         for key, ask in watched.items():
             if ask.settled and ask.differs(found.get(key)):

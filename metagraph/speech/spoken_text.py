@@ -5,7 +5,7 @@ break of SSML is a pause.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from metagraph.common.wording import Phrase, phrase
@@ -15,7 +15,8 @@ THINKING = phrase("thinking")
 CODE = phrase("code")
 ADDRESSES = phrase("addresses")
 PICTURES = phrase("pictures")
-_INSIDE = "\0"  # stands before what does not begin a line
+_INSIDE = "\0"  # stands before what does not begin a line,
+_IN_WORD = "\u2c76"  # and before what goes on with a word
 _HELD = 20_000  # characters of a part that has not ended: more is taken as it is
 _STRENGTHS = {"none": 0.0, "x-weak": 0.1, "weak": 0.25, "medium": 0.5, "strong": 0.8, "x-strong": 1.2}
 _THINKS = "think|thinking|thought|reasoning|scratchpad|analysis"
@@ -26,6 +27,7 @@ _ADDRESS = re.compile(
 )
 _LINE_MARKS = re.compile(r"(?m)^[ \t]*(?:#{1,6}[ \t]+|>[ \t]?|[-*+][ \t]+)+")
 _RULES = re.compile(r"(?m)^[ \t]*(?:[-*_][ \t]*){3,}$")
+_TABLE = re.compile(r"(?m)^[ \t]*\|(.*)\|[ \t]*$")
 _EMPHASIS = re.compile(r"(?<!\w)[*_~]{1,3}(?=\S)|(?<=\S)[*_~]{1,3}(?!\w)")
 # What has begun at the end of a text and may go on: everything from there on waits.
 _OPEN = (
@@ -33,10 +35,12 @@ _OPEN = (
     re.compile(rf"<(?:{_THINKS})\b[^<>]*>(?:(?!</(?:{_THINKS})>).)*\Z", re.IGNORECASE | re.DOTALL),
     re.compile(r"```(?:(?!```).)*\Z", re.DOTALL),
     re.compile(r"<[A-Za-z/][^<>\n]*\Z|<\Z"),
-    re.compile(r"`[^`\n]*\Z"),
     re.compile(r"!?\[[^\]\n]*\Z|!?\[[^\]\n]*\]\([^)\n]*\Z|!?\[[^\]\n]*\]\Z"),
     re.compile(r"(?m)^[ \t]*[#>*+`-]*[ \t]*\Z"),
+    re.compile(r"(?m)^[ \t]*\|[^\n]*\Z"),
 )
+# Where words are said letter by letter as they come, only these of their pieces wait.
+_OPEN_IN_WORDS = re.compile(r"\bht(?:t\S*)?\Z|\bwww?\S*\Z|\S+@\S*\Z|[*_~]{1,3}\Z")
 
 
 _BEFORE_MARK = re.compile(r" ([.,;:!?…])(?=\s|$)")  # a blank that something left out has left
@@ -51,24 +55,30 @@ class SpokenPart:
 
 
 class SpokenText:
-    """Takes a text in pieces, and returns what of it is to be said. `left_out` names what was not."""
+    """Takes a text in pieces, and returns what of it is to be said. `left_out` names what was not. words:
+    whether a word is returned when it is whole; else as it comes.
+    """
 
-    def __init__(self) -> None:
+    def __init__(self, words: bool = True) -> None:
+        self._words = words
+        self._open = _OPEN if words else (_OPEN_IN_WORDS, *_OPEN[1:])
         self.left_out: list[Phrase] = []
         self._waiting = ""
-        self._begins = True  # whether what comes next begins a line
+        self._before = ""  # what stands for what came before, where that did not end a line
 
     def take(self, piece: str, over: bool = False) -> list[SpokenPart]:
         """Take in the next piece; return the parts of the text that are certain by now. `over` tells that the
         text ends here; thinking or code that has not ended by then is left out.
         """
-        text = self._waiting + piece
-        end = len(text) if over else _certain(text)
+        text, before = self._waiting + piece, self._before
+        end = len(text) if over else max(0, _find_certain(before + text, self._open) - len(before))
         if len(text) - end > _HELD:
             end = len(text)
         self._waiting = text[end:]
-        parts = self._parts(text[:end] if self._begins else _INSIDE + text[:end])
-        self._begins = text[end - 1] == "\n" if end else self._begins
+        parts = self._parts(before + text[:end])
+        if end:
+            last = text[end - 1]
+            self._before = "" if last == "\n" else _IN_WORD if last.isalnum() or last == "_" else _INSIDE
         return parts
 
     def _parts(self, text: str) -> list[SpokenPart]:
@@ -82,7 +92,9 @@ class SpokenText:
             SpokenPart(_plain(part), _seconds(pause))
             for part, pause in zip(parts, [*pauses, None], strict=True)
         ]
-        return [part for part in out if part.text.strip() or part.pause > 0]
+        return [
+            part for part in out if part.text.strip() or part.pause > 0 or (part.text and not self._words)
+        ]
 
     def _without(self, pattern: str, text: str, what: Phrase) -> str:
         found = re.sub(pattern, " ", text, flags=re.IGNORECASE | re.DOTALL)
@@ -121,14 +133,17 @@ def read_spoken_line(text: str) -> tuple[str, list[Phrase]]:
     return _BEFORE_MARK.sub(r"\1", " ".join(line.split())), left_out
 
 
-def _certain(text: str) -> int:
-    """Return up to if nothing that comes later changes what is to be said."""
+def _find_certain(text: str, open_: Sequence[re.Pattern[str]]) -> int:
+    """Return up to where nothing that comes later changes what is to be said."""
     end, before = len(text), -1
     while end != before:
         before = end
-        for pattern in _OPEN if end == len(text) else _OPEN[1:]:
+        for pattern in open_ if end == len(text) else open_[1:]:
             found = pattern.search(text[:end])
             end = found.start() if found is not None else end
+        line = text.rfind("\n", 0, end) + 1
+        if text.count("`", line, end) % 2:
+            end = text.rfind("`", line, end)
     return end
 
 
@@ -136,9 +151,18 @@ def _plain(text: str) -> str:
     """Return a text without tags and marks of Markdown."""
     text = _TAG.sub("", text)
     text = _RULES.sub("", text)
+    text = _TABLE.sub(_read_row, text)
     text = _LINE_MARKS.sub("", text)
     text = text.replace("`", "")
-    return _EMPHASIS.sub("", text).replace(_INSIDE, "")
+    return _EMPHASIS.sub("", text).replace(_INSIDE, "").replace(_IN_WORD, "")
+
+
+def _read_row(row: re.Match[str]) -> str:
+    """Return the cells of a table's row as a list; nothing of the line below its head."""
+    cells = [cell.strip() for cell in row[1].split("|")]
+    return (
+        "" if all(re.fullmatch(r":?-+:?", cell) for cell in cells) else ", ".join(c for c in cells if c) + "."
+    )
 
 
 def _seconds(attributes: str | None) -> float:

@@ -12,9 +12,11 @@ import pytest
 from metagraph.graph.model import Project
 from metagraph.live.live_session import LiveSession
 from metagraph.live.steering import INTERRUPTED
+from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.lips import compute_mouth_shapes
 from metagraph.playback.life.utterances import FORGOTTEN
 from metagraph.playback.planning.running_plan import plan_performance
+from metagraph.speech.spoken_so_far import spoken_until
 
 TICK = 1 / 60
 RAIN = "It rains all day, so take a coat with you."
@@ -402,3 +404,67 @@ def test_an_utterance_that_waits_for_more_stays_open_when_it_is_paused_and_resum
     talk.ask(do="finish", what="a")
     talk.wait(2.0)
     assert talk.ends("a") == ["finished"]
+
+
+def stream(talk: Talk, tokens: list[str], ident: str = "a") -> list[dict[str, Any]]:
+    """Send tokens, the last as the last one; return the replies."""
+    replies = []
+    for n, token in enumerate(tokens):
+        replies.append(talk.ask(do="say", id=ident, text=token, more=n < len(tokens) - 1))
+        talk.wait(0.05)
+    return replies
+
+
+@pytest.mark.parametrize(
+    ("tokens", "said"),
+    [
+        (["<th", "ink>The us", "er wants it</th", "ink>Sure", ", yes."], "Sure, yes."),
+        (["<think>", "Secret.", "</think>", "Open."], "Open."),
+        (["This is ", "**", "bold", "**", " text."], "This is bold text."),
+        (["Look at ", "htt", "ps://a.b/c?", "d now."], "Look at now."),
+        (["Call ", "`open", "_it`", " now", ""], "Call open_it now"),
+        (["One", " ", "two", ".", " ", "**"], "One two."),
+        (["One thing first.", '<break time="2s"/>', " Two."], "One thing first. Two."),
+    ],
+)
+def test_tokens_with_marks_of_a_model_are_one_utterance_without_them(
+    talk: Talk, tokens: list[str], said: str
+) -> None:
+    replies = stream(talk, tokens)
+    assert all(r["state"] in ("planned", "done") for r in replies), replies
+    talk.wait(6.0)
+    assert talk.ends("a") == ["finished"]
+    text, _ = spoken_until(ALPHABET, talk.session.plan.track.speeches, "c1/a", talk.session.now)
+    assert " ".join(text.split()) == said
+
+
+def test_a_break_in_a_text_is_a_pause(talk: Talk) -> None:
+    said = talk.ask(do="say", id="a", text='One.<break time="2s"/> Two.')
+    assert said["until"] - said["at"] > 2.5
+    assert talk.opens(said["at"] + 0.8, said["until"] - 0.8) < 0.05
+    assert talk.opens(said["until"] - 0.6, said["until"]) > 0.1
+
+
+def test_an_id_that_is_used_again_is_answered_with_what_it_asks_for_now(talk: Talk) -> None:
+    for request in (
+        {"do": "look", "to": "user"},
+        {"do": "mood", "mood": "happy"},
+        {"do": "mode", "mode": "listening"},
+    ):
+        ident = request["do"]
+        talk.ask(id=ident, **request)
+        talk.wait(2.0)
+        again = talk.ask(id=ident, **request)
+        assert again["at"] > talk.session.now - 0.1 and len(again["actions"]) == 1, again
+    talk.wait(1.0)
+    assert "lasts until another" in talk.ask(do="withdraw", what="mode")["why"]
+
+
+def test_a_stance_that_is_kept_can_be_given_up_when_it_is_reached(talk: Talk) -> None:
+    stance = next(s.name for s in talk.session.project.graphs["body"].stances.values())
+    talk.ask(do="stance", id="s", layer="body", stance=stance, stay=True)
+    talk.wait(4.0)
+    assert [x for x in talk.session.plan.track.stays if x.end > talk.session.now]
+    assert "taken back" in talk.ask(do="withdraw", what="s")["why"]
+    talk.wait(0.5)
+    assert not [x for x in talk.session.plan.track.stays if x.end > talk.session.now]
