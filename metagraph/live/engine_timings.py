@@ -19,6 +19,7 @@ from metagraph.speech.phones import find_visemes, is_arpabet
 AZURE_RATE = 60.0  # frames of blend shapes a second
 TICKS = 1e7  # a second, in which Azure counts
 LAST = 0.12  # seconds of a phone after which nothing comes
+SHAPES = {"PP", "FF", "DD", "SS", "RR", "kk", "nn"}  # visemes of Oculus that are no phones
 PHONES = ("ipa", "arpabet", "sampa")  # sets of phones, beside those of visemes
 _ALIGNMENTS = ("alignment", "normalizedAlignment", "normalized_alignment")
 _LISTS = (  # text, start, end, length of lists beside each other; thousandths of a second where it says Ms
@@ -149,6 +150,8 @@ def _cue_of(row: Any) -> tuple[float, str, float | None] | None:
 def _are_phones(cues: Sequence[tuple[float, str, float | None]]) -> bool:
     """Return whether names are phones: ARPAbet's, or nearly all of them short and with a mouth shape."""
     names = [name for _, name, _ in cues if name.strip() not in ("", "sil", "sp", "pau")]
+    if not SHAPES.isdisjoint(names):
+        return False
     if is_arpabet(names):
         return True
     known = sum(bool(find_visemes(name, False)[0]) for name in names)

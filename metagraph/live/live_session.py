@@ -252,7 +252,7 @@ class LiveSession:
             if isinstance(ask, a.Interrupt | a.Finish):
                 self._texts.close(plan_key(client.owner, ask.what), not ask.what)
             return self._steering.answer(client, ident, ask, self.plan, self.now, work)
-        notes: tuple[str, ...] = ()
+        notes = self._note_unknown_point(ask)
         if isinstance(ask, a.Say) and (ask.text or self._steering.is_open(self.plan, key, work)):
             opened = self._steering.is_open(self.plan, key, work)
             ask, left_out = self._texts.read(key, ask, opened)
@@ -286,6 +286,18 @@ class LiveSession:
             return self._steering.answer(client, ident, over, self.plan, self.now, work)
         why = str(phrase("the text contains no words to say"))
         return Reply(id=ident, state="done" if ask.more else "refused", why=why)
+
+    def _note_unknown_point(self, ask: Any) -> tuple[str, ...]:
+        """Return a note where a request is a look at a name that nothing has."""
+        known = {"user", "ahead", "partner", *self.project.points, *self._names}
+        if not isinstance(ask, a.Look) or not isinstance(ask.to, str) or ask.to in known:
+            return ()
+        text = phrase(
+            "nothing is called '{name}', so the gaze stays ahead; there are {known}, and 'place' adds one",
+            name=ask.to[:60],
+            known=", ".join(sorted(known)[:10]),
+        )
+        return (str(text),)
 
     def _partner(self, client: Client, message: Partner, work: TickWork, place: int) -> Reply | bytes | None:
         """Take up what the partner feels, or laugh along."""

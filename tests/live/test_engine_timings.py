@@ -213,3 +213,12 @@ FIELDS = st.sampled_from(
 @given(st.dictionaries(FIELDS, JSON))
 def test_whatever_is_sent_is_read_or_refused(fields: dict[str, Any]) -> None:
     assert isinstance(read_live_request(json.dumps({"do": "say", **fields})), HeardMessage | Reply)
+
+
+def test_a_mouth_shape_that_nobody_knows_among_known_ones_is_refused(sample: Project) -> None:
+    session = LiveSession(sample)
+    visemes = [[0, "PP"], [0.1, "aa"], [0.2, "PP"], [0.26, "xx"]]
+    session.receive(1, json.dumps({"do": "say", "visemes": visemes}))
+    (reply,) = session.tick(0.1).replies
+    assert isinstance(reply, Reply)
+    assert "'xx': is in no set of visemes" in f"{reply.error} {reply.why}"

@@ -468,3 +468,9 @@ def test_a_stance_that_is_kept_can_be_given_up_when_it_is_reached(talk: Talk) ->
     assert "taken back" in talk.ask(do="withdraw", what="s")["why"]
     talk.wait(0.5)
     assert not [x for x in talk.session.plan.track.stays if x.end > talk.session.now]
+
+
+def test_a_look_at_something_that_nobody_has_placed_says_so(talk: Talk) -> None:
+    assert "nothing is called 'usr'" in talk.ask(do="look", to="usr")["notes"][0]
+    talk.ask(do="place", name="usr", point=[0.0, 1.5, 2.0])
+    assert "notes" not in talk.ask(do="look", to="usr") or not talk.ask(do="look", to="usr")["notes"]
