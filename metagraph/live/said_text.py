@@ -57,7 +57,7 @@ class SaidTexts:
         text, _ = read_spoken_line(ask.text)
         pauses = not told and any(part.pause >= PAUSE for part in parts[:-1])
         return msgspec.structs.replace(
-            ask, text=text, words=pace_parts(parts) if pauses else ask.words
+            ask, text=text, words=place_words(parts) if pauses else ask.words
         ), left_out
 
     def is_open(self, key: str) -> bool:
@@ -70,7 +70,7 @@ class SaidTexts:
             del self._open[known]
 
 
-def pace_parts(parts: Sequence[SpokenPart]) -> list[list[object]]:
+def place_words(parts: Sequence[SpokenPart]) -> list[list[object]]:
     """Return the words `[text, start, end]` of a text with pauses, in seconds of its line, paced by its
     letters.
     """
