@@ -193,6 +193,7 @@ def make_style_sheet(look: WindowTheme) -> str:
     QDockWidget > QWidget {{ background: {t.panel}; }}
     QToolBar {{ background: {t.panel}; border: none; border-bottom: 1px solid {t.line}; padding: 5px 8px; spacing: 4px; }}
     QToolBar QToolButton {{ padding: 5px 9px; }}
+    QToolBar[slim="true"] QToolButton {{ padding: 5px 6px; }}
     QToolBar::separator {{ background: {t.line}; width: 1px; margin: 6px 4px; }}
     QStatusBar {{ background: {t.panel}; color: {t.dim}; border-top: 1px solid {t.line}; }}
     QStatusBar::item {{ border: none; }}

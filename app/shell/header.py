@@ -9,7 +9,7 @@ from html import escape
 
 from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QLabel, QSizePolicy, QToolBar, QWidget
+from PySide6.QtWidgets import QLabel, QSizePolicy, QToolBar, QToolButton, QWidget
 
 from app.look.theme import get_theme
 from app.project.document import Document
@@ -19,6 +19,7 @@ from app.stage.session import StageSession
 from app.translation import tr
 
 NARROW, WIDE = 100, 1600  # pixels of the project's name, and of a window with room for three times that
+SLIM = 1400  # pixels of a window in which the bar's buttons stand closer, so that none of their words is cut
 
 
 class Header(QToolBar):
@@ -73,6 +74,15 @@ class Header(QToolBar):
         super().resizeEvent(event)
         if (event.size().width() < WIDE) != (event.oldSize().width() < WIDE):
             self.refresh()
+        self._set_slim(event.size().width() < SLIM)
+
+    def _set_slim(self, slim: bool) -> None:
+        """Let the buttons stand closer, or as far apart as usual again."""
+        if bool(self.property("slim")) != slim:
+            self.setProperty("slim", slim)
+            for button in self.findChildren(QToolButton):
+                button.style().polish(button)
+                button.updateGeometry()
 
 
 def _stretch(parent: QWidget) -> QWidget:

@@ -339,3 +339,19 @@ def test_the_language_follows_the_settings_then_the_system(
 
     translation.choose_language(Settings(), system)
     assert translation.get_language() == chosen
+
+
+def test_with_nothing_to_undo_no_colon_waits_for_words(english: None) -> None:
+    from types import SimpleNamespace
+
+    from app.features.files.file_commands import FileFeature
+
+    def said(done: str, undone: str) -> tuple[str, str]:
+        stack = SimpleNamespace(undoText=lambda: done, redoText=lambda: undone)
+        feature = SimpleNamespace(undo_stack=stack)
+        return FileFeature.undo_text(feature), FileFeature.redo_text(feature)
+
+    assert said("", "") == ("&Undo", "&Redo")
+    translation.choose("de")
+    assert said("", "") == ("&Rückgängig", "&Wiederholen")
+    assert said("Umbenennen", "Laden") == ("&Rückgängig: Umbenennen", "&Wiederholen: Laden")

@@ -353,8 +353,11 @@ def paint_empty_conversation(painter: QPainter, t: WindowTheme, area: QRectF, li
             x = rect.left() + 12 + n * 6
             painter.drawLine(QPointF(x, rect.center().y() - tall), QPointF(x, rect.center().y() + tall))
     painter.setPen(QColor(t.text))
-    for n, line in enumerate(lines):
-        painter.drawText(
-            QRectF(area.left(), top + 62 + n * 20, area.width(), 20), Qt.AlignmentFlag.AlignCenter, line
-        )
+    flags = Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
+    room = area.adjusted(16, 0, -16, 0)
+    room.setTop(top + 62)
+    for line in lines:
+        words = painter.boundingRect(room, flags, line)
+        painter.drawText(words, flags, line)
+        room.setTop(words.bottom() + 4)
         painter.setPen(QColor(t.dim))

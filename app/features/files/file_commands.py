@@ -170,7 +170,8 @@ class FileFeature(Feature):
         return self.undo_stack.canUndo()
 
     def undo_text(self) -> str:
-        return tr("&Undo {what}", what=self.undo_stack.undoText()).strip()
+        what = self.undo_stack.undoText()
+        return tr("&Undo {what}", what=what) if what else tr("&Undo")
 
     def redo(self) -> None:
         self.document.redo()
@@ -179,7 +180,8 @@ class FileFeature(Feature):
         return self.undo_stack.canRedo()
 
     def redo_text(self) -> str:
-        return tr("&Redo {what}", what=self.undo_stack.redoText()).strip()
+        what = self.undo_stack.redoText()
+        return tr("&Redo {what}", what=what) if what else tr("&Redo")
 
 
 COMMANDS = (

@@ -84,8 +84,10 @@ class RepairsDialog(QDialog):
         self.go.clicked.connect(self.apply)
         strengthen(self.go)
         self.buttons.rejected.connect(self.reject)
-        for part in (self.headline, self.words, self.tree, self.lines, self.trouble, self.buttons):
+        for part in (self.headline, self.words, self.tree, self.lines, self.trouble):
             layout.addWidget(part, 1 if part is self.tree else 0)
+        layout.addStretch(0)  # where there is no tree, the words stay at the top
+        layout.addWidget(self.buttons)
         document.changed.connect(self._fill)
         document.loaded.connect(self.reject)
         self._fill()

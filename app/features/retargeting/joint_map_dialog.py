@@ -27,7 +27,7 @@ from PySide6.QtWidgets import (
 from app.look.joint_roles import describe_joint_role
 from app.look.theme import DARK, LIGHT, strengthen
 from app.project.jobs import Jobs
-from app.translation import tr, tr_error, tr_noop, tr_plural
+from app.translation import tr, tr_error, tr_noop, tr_phrase, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.stick_figures import StickFigures
@@ -143,7 +143,7 @@ class JointMapDialog(QDialog):
             files=files,
             joints=len(self.source),
             height=self.source.height,
-            why=self.strangers.why,
+            why=tr_phrase(self.strangers.why),
         )
         if not self.strangers.why:  # they are in the project
             words = tr(

@@ -797,3 +797,17 @@ def test_a_dialog_opens_over_the_window_and_closes(toys, command):
     for dialog in drive.window.findChildren(QDialog):
         dialog.close()
     drive.pause(30)
+
+
+def test_the_buttons_of_a_narrow_windows_header_stand_closer(drive):
+    """So that no longer words, as in German, are cut at 1280 pixels."""
+    button = next(b for b in drive.window.header.findChildren(QToolButton) if b.isVisible() and b.text())
+    drive.window.resize(1680, 1020)
+    drive.pause(20)
+    wide = button.sizeHint().width()
+    drive.window.resize(1280, 680)
+    drive.pause(20)
+    narrow = button.sizeHint().width()
+    drive.window.resize(1680, 1020)
+    drive.pause(20)
+    assert narrow < wide == button.sizeHint().width()

@@ -8,9 +8,11 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
+from app.features.conversation.segment_view import SegmentView
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.requests import Performance
+from tests.app.painted_text import painted
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
@@ -143,3 +145,12 @@ def test_the_first_conversation_plays_by_a_click_on_the_empty_stage_and_nothing_
     assert onstage.conversation == next(iter(drive.document.project.conversations))
     assert drive.session.transport.playing and not panel.play.isVisible()
     assert not panel.editing.chosen, "Delete would remove it"
+
+
+@pytest.mark.parametrize("width", [360, 700])
+def test_what_an_empty_panel_says_is_never_cut(drive: Any, width: int) -> None:
+    view = drive.conversation.findChild(SegmentView)
+    view.resize(width, 400)
+    words = painted(view)
+    assert "TextGrid" in " ".join(w.text for w in words)
+    assert all(w.rect.left() >= 0 and w.rect.right() <= width and w.rect.bottom() <= 400 for w in words)
