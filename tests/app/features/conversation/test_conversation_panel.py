@@ -12,7 +12,7 @@ from app.features.conversation.segment_view import SegmentView
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.requests import Performance
-from tests.app.painted_text import painted
+from tests.app.painted_text import painted, texts
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
@@ -154,3 +154,20 @@ def test_what_an_empty_panel_says_is_never_cut(drive: Any, width: int) -> None:
     words = painted(view)
     assert "TextGrid" in " ".join(w.text for w in words)
     assert all(w.rect.left() >= 0 and w.rect.right() <= width and w.rect.bottom() <= 400 for w in words)
+
+
+def test_who_has_no_sound_beside_one_who_has_listens_and_names_stay_apart(talk: Any) -> None:
+    """A monologue is no mistake."""
+    ident = talk.drive.session.onstage.conversation
+    for side, name in enumerate(("First speaker of all", "First speaker of them")):
+        sound: dict[str, Any] = {"audio": None} if side else {}
+        talk.drive.document.edit(
+            "Change",
+            lambda p, s=side, n=name, more=sound: conversation_edits.change_side(p, ident, s, name=n, **more),
+        )
+    talk.read()
+    said = [text.text for text in texts(talk.view)]
+    assert any(words.startswith("Listens.") for words in said)
+    assert not any("⚠" in words for words in said)
+    names = [words for words in said if "…" in words and words.startswith(("First", "…", "F"))][:2]
+    assert len(set(names)) == 2
