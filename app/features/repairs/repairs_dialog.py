@@ -116,6 +116,7 @@ class RepairsDialog(QDialog):
                 item = QTreeWidgetItem(top, [whose, tr_phrase(repair.words)])
                 item.setData(0, PLACE, n)
                 item.setToolTip(0, entry.path)
+                item.setToolTip(1, item.text(1))
                 item.setCheckState(0, TICKED if found[n].repair.made else OPEN)
             top.setExpanded(len(mine) <= 12)
         self.tree.blockSignals(False)
