@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from html import escape
 
-from PySide6.QtCore import QSize, Qt
+from PySide6.QtCore import QEvent, QSize, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QSizePolicy, QToolBar, QToolButton, QWidget
 
@@ -19,7 +19,7 @@ from app.stage.session import StageSession
 from app.translation import tr
 
 NARROW, WIDE = 100, 1600  # pixels of the project's name, and of a window with room for three times that
-SLIM = 1400  # pixels of a window in which the bar's buttons stand closer, so that none of their words is cut
+LEVELS = 3  # of giving way: closer buttons; as good as no space and fewer words; no name
 
 
 class Header(QToolBar):
@@ -41,7 +41,8 @@ class Header(QToolBar):
         self.name = QLabel(self)
         self.name.setContentsMargins(6, 0, 12, 0)
         self.name.setTextFormat(Qt.TextFormat.RichText)
-        self.addWidget(self.name)
+        self._name_action = self.addWidget(self.name)
+        self._level, self._wider, self._fitting = 0, 0, False
         items = tuple(items)
         for side in ("left", "middle", "right"):
             for item in items:
@@ -65,24 +66,73 @@ class Header(QToolBar):
         dim = get_theme(self.session.look.name).dim
         room = NARROW if self.width() < WIDE else 3 * NARROW
         name = self.name.fontMetrics().elidedText(d.project.name, Qt.TextElideMode.ElideMiddle, room)
-        words = f"<b>{escape(name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>"
+        words = f"<b>{escape(name)}</b>"
+        if self._level < 2:
+            words += f"&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>"
         self.name.setToolTip(f"{d.project.name}, {saved}")
         if words != self.name.text():  # rich text is laid out again each time
             self.name.setText(words)
+
+    # --- room
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         if (event.size().width() < WIDE) != (event.oldSize().width() < WIDE):
             self.refresh()
-        self._set_slim(event.size().width() < SLIM)
+        self._fit()
 
-    def _set_slim(self, slim: bool) -> None:
-        """Let the buttons stand closer, or as far apart as usual again."""
-        if bool(self.property("slim")) != slim:
-            self.setProperty("slim", slim)
-            for button in self.findChildren(QToolButton):
-                button.style().polish(button)
-                button.updateGeometry()
+    def event(self, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.LayoutRequest:
+            self._fit()
+        return super().event(event)
+
+    def _fit(self) -> None:
+        """Let parts give way until all have room: the distance of the buttons first, the project's name
+        last, which the window's title has too. Without this, the last buttons would be hidden.
+        """
+        if self._fitting:
+            return
+        if self._measure() <= self.width() and (self._level == 0 or self.width() < self._wider):
+            return
+        self._fitting, self._wider = True, 0
+        for level in range(LEVELS + 1):
+            self._give_way(level)
+            needed = self._measure()
+            if needed <= self.width() or level == LEVELS:
+                break
+            self._wider = needed
+        self._fitting = False
+
+    def _measure(self) -> int:
+        """Return the width that all parts need."""
+        bar, margins = self.layout(), self.contentsMargins()
+        assert bar is not None
+        frame = bar.contentsMargins()
+        out = margins.left() + margins.right() + frame.left() + frame.right()
+        for action in self.actions():
+            part = self.widgetForAction(action)
+            if part is not None and action.isVisible():
+                inner = part.layout()
+                if inner is not None:
+                    inner.activate()
+                out += max(0, part.sizeHint().width()) + bar.spacing()
+        return out
+
+    def _give_way(self, level: int) -> None:
+        if level == self._level:
+            return
+        self._level = level
+        self.setProperty("slim", str(min(level, 2)) if level else "")
+        style = Qt.ToolButtonStyle
+        for button in self.findChildren(QToolButton):
+            if button.property("gives_way"):
+                button.setToolButtonStyle(
+                    style.ToolButtonIconOnly if level > 1 else style.ToolButtonTextBesideIcon
+                )
+            button.style().polish(button)
+            button.updateGeometry()
+        self._name_action.setVisible(level < LEVELS)
+        self.refresh()
 
 
 def _stretch(parent: QWidget) -> QWidget:
