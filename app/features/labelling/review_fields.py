@@ -125,13 +125,13 @@ class ReviewFields(QWidget):
                 x += width + GAP
             below = top + CHIP + 4
             lines = small.boundingRect(
-                QRectF(0, 0, wide - TITLE - 2 * PAD, 500), int(Qt.TextFlag.TextWordWrap), row.reason
+                QRectF(0, 0, wide - TITLE - 2 * PAD, 5000), int(Qt.TextFlag.TextWordWrap), row.reason
             ).height() if row.reason else 0.0  # fmt: skip
             placed.reason = QRectF(
                 PAD + TITLE,
                 below,
                 wide - TITLE - 2 * PAD,
-                min(max(LINE, lines), 3.2 * LINE) if row.reason else 0,
+                max(LINE, lines) if row.reason else 0,
             )
             placed.card = QRectF(0, y, wide, placed.reason.bottom() + PAD - 2 - y)
             self._placed.append(placed)

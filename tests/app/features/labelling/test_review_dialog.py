@@ -582,3 +582,17 @@ def test_what_is_written_over_the_character_leaves_its_face_free(drive, lines):
     top = above / (1 + above) * stage.view.height()  # where a figure begins that fills the rest
     assert top >= stage.words.height() + 12 - 1
     stage.deleteLater()
+
+
+def test_why_something_is_proposed_is_told_whole(drive):
+    from app.features.labelling.review_fields import ReviewFields, ReviewRow
+    from tests.app.painted_text import painted
+
+    fields = ReviewFields(drive.session, drive.window)
+    fields.resize(380, 400)
+    why = " ".join(f"word{n}" for n in range(60))
+    fields.show_rows([ReviewRow("layer", "Layer", (("arms", "Arms"),), "arms", 1.0, why)], "layer")
+    said = painted(fields)
+    assert "word59" in " ".join(text.text for text in said)
+    assert max(text.rect.bottom() for text in said) <= fields.height()
+    fields.deleteLater()
