@@ -77,6 +77,9 @@ class TimingPanel(QWidget):
             True,
         )
         self.compare.clicked.connect(subject.compare)
+        self.compare.setText(tr("A: before"))  # nothing moves when it says so
+        self.compare.setMinimumWidth(self.compare.sizeHint().width())
+        self.compare.setText(tr("A/B"))
         self.loop = self._button(tr("Loop"), tr("Play only this action, in a loop"), True)
         self.loop.clicked.connect(subject.loop_action)
         self.more = MoreButton(session.look, tr("Display options"), tr("Display options"), self)
