@@ -19,7 +19,7 @@ from app.stage.session import StageSession
 from app.translation import tr
 
 NARROW, WIDE = 100, 1600  # pixels of the project's name, and of a window with room for three times that
-LEVELS = 3  # of giving way: closer buttons; as good as no space and fewer words; no name
+LEVELS = 3  # of giving way: closer buttons; closer ones still, and fewer words; no name
 
 
 class Header(QToolBar):
