@@ -80,7 +80,8 @@ def run(options: Namespace) -> int:
         "joints": len(project.skeleton) if project.skeleton else 0,
         "layers": layers,
     }
-    lines = [f"{project.name}: {len(project.clips)} clips, {whole.clips} placed, {data['joints']} joints"]
+    many = "1 clip" if len(project.clips) == 1 else f"{len(project.clips)} clips"
+    lines = [f"{project.name}: {many}, {whole.clips} placed, {data['joints']} joints"]
     for layer, counts in layers.items():
         lines.append(
             f"  {layer:5} "

@@ -45,7 +45,7 @@ from metagraph.common.extras import (
 )
 
 HEADS = make_lazy_texts(
-    lambda: (tr("Extra"), tr("For"), tr("Download"), tr("On disk"), tr("Licence"), tr("State"))
+    lambda: (tr("Extra"), tr("For"), tr("Download"), tr("On disk"), tr("Licence"), tr("Status"))
 )
 STEPS = 1000  # of the progress bar
 
@@ -331,7 +331,7 @@ def _describe_offline(name: str, own: bool) -> str:
     """Return the steps that bring an extra to a computer without a network, with the exact names."""
     folder = f"metagraph-{name}"
     last = (
-        tr("3. Choose that folder here, with From a folder…")
+        tr("3. Choose that folder here with the button From a folder.")
         if own
         else tr("3. Run this beside that folder:") + f"\n    {make_offline_command(name)}"
     )

@@ -19,7 +19,8 @@ from app.stage.session import StageSession
 from app.translation import tr
 
 NARROW, WIDE = 100, 1600  # pixels of the project's name, and of a window with room for three times that
-LEVELS = 3  # of giving way: closer buttons; closer ones still, and fewer words; no name
+UNSAVED = "•"  # for the words that say so, where they have no room
+LEVELS = 4  # of giving way: a dot for "unsaved"; closer buttons; closer ones and fewer words; no name
 
 
 class Header(QToolBar):
@@ -66,10 +67,10 @@ class Header(QToolBar):
         dim = get_theme(self.session.look.name).dim
         room = NARROW if self.width() < WIDE else 3 * NARROW
         name = self.name.fontMetrics().elidedText(d.project.name, Qt.TextElideMode.ElideMiddle, room)
-        words = f"<b>{escape(name)}</b>"
-        if self._level < 2:
-            words += f"&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>"
         self.name.setToolTip(f"{d.project.name}, {saved}")
+        if self._level:
+            saved = "" if d.path is not None and not d.dirty else UNSAVED
+        words = f"<b>{escape(name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>"
         if words != self.name.text():  # rich text is laid out again each time
             self.name.setText(words)
 
@@ -87,7 +88,7 @@ class Header(QToolBar):
         return super().event(event)
 
     def _fit(self) -> None:
-        """Let parts give way until all have room: the distance of the buttons first, the project's name
+        """Let parts give way until all have room: words for "unsaved" first, the project's name
         last, which the window's title has too. Without this, the last buttons would be hidden.
         """
         if self._fitting:
@@ -122,12 +123,12 @@ class Header(QToolBar):
         if level == self._level:
             return
         self._level = level
-        self.setProperty("slim", str(min(level, 2)) if level else "")
+        self.setProperty("slim", str(min(level - 1, 2)) if level > 1 else "")
         style = Qt.ToolButtonStyle
         for button in self.findChildren(QToolButton):
             if button.property("gives_way"):
                 button.setToolButtonStyle(
-                    style.ToolButtonIconOnly if level > 1 else style.ToolButtonTextBesideIcon
+                    style.ToolButtonIconOnly if level > 2 else style.ToolButtonTextBesideIcon
                 )
             button.style().polish(button)
             button.updateGeometry()

@@ -15,7 +15,7 @@ from PySide6.QtGui import QFont
 
 from app.look.shortening import measure_font
 from app.stage.playback_source import ShownPlayback
-from app.translation import make_lazy_texts, tr
+from app.translation import make_lazy_texts, tr, tr_context
 from app.widgets.request_menu import STAGE, ask_kind, describe_request
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
@@ -265,8 +265,8 @@ VERBS = make_lazy_texts(
         "look": tr("Looks"),
         "mode": tr("Changes"),
         "mood": tr("Changes"),
-        "place": tr("Moves"),
-        "blink": tr("Blinks"),
+        "place": tr_context("request", "Moves"),
+        "blink": tr_context("request", "Blinks"),
     }
 )
 

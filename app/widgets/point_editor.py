@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.project.document import Document
-from app.translation import make_lazy_texts, tr
+from app.translation import make_lazy_texts, tr, tr_context
 from app.widgets.quiet_fields import DoubleSpinBox
 from metagraph.graph.editing import performances as performance_edits
 
@@ -25,7 +25,7 @@ AXES = make_lazy_texts(
     lambda: (
         (tr("Left"), tr("Metres to the character's left; negative values are to its right")),
         (tr("Up"), tr("Metres above the floor")),
-        (tr("Ahead"), tr("Metres in front of the character")),
+        (tr_context("metres", "Ahead"), tr("Metres in front of the character")),
     )
 )
 

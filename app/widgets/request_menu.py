@@ -44,6 +44,7 @@ MODE_ASKED = make_lazy_texts(
         "reacting": tr("react"),
     }
 )  # within a sentence
+LOOK_TARGETS = make_lazy_texts(lambda: {"user": tr("user"), "ahead": tr("ahead"), "partner": tr("partner")})
 
 
 def ask_kind(ask: a.AnyRequest) -> str | None:
@@ -74,7 +75,10 @@ def describe_request(ask: a.AnyRequest, project: Project) -> str:
         case a.Nod() | a.Shake():
             return f"{KIND_MARKS['gesture']} {tr('nod') if isinstance(ask, a.Nod) else tr('shake')}"
         case a.Look():
-            return tr("look at {what}", what=ask.to if isinstance(ask.to, str) else tr("a point"))
+            if ask.to == "ahead":
+                return tr("look ahead")
+            what = LOOK_TARGETS.get(ask.to, ask.to) if isinstance(ask.to, str) else tr("a point")
+            return tr("look at {what}", what=what)
         case a.Say():
             line = project.lines.get(str(ask.line)) if ask.line is not None else None
             text = ask.text or (line.text if line else "")

@@ -5,7 +5,7 @@ With 10, 20, 50, 100 and 152 of the sample clips, or with the numbers given, thr
 real events (needs xdotool; half an hour for all), each in the quickest way known; ways that nobody would go
 who knows the tool are counted with the real edits, without the window. Writes the tables of
 docs/researchers/experts-paths.md, experts-paths-tables.md and experts-paths-search.md, and
-docs/images/participant.svg. A run that was interrupted goes on where it was; `--again` begins again.
+docs/images/participant.svg. A run that was interrupted continues where it was; `--again` starts from the beginning.
 """
 
 from __future__ import annotations
@@ -267,10 +267,9 @@ def search_table(rows: Sequence[Mapping[str, Any]]) -> str:
     row = next(r for r in rows if key(r) == (BEST, size, True, False))
     enough, least = (", ".join(map(str, row[name])) for name in ("rectangles", "least"))
     out = [
-        f"With {size} clips, {enough} aliases suffice in the layers body, arms and head, and fewer than "
-        f"{least} cannot.",
+        f"With {size} clips, the layers body, arms and head need {enough} aliases. The lower bounds are {least}.",
         "",
-        "| way | predicted | links | mistakes |",
+        "| way | predicted time | links | mistakes |",
         "|---|---|---|---|",
     ]
     out += [f"| {way} | {time_words(s)} | {links:,} | {wrong} |" for way, s, links, wrong in row["tried"]]
@@ -342,7 +341,7 @@ def plot(rows: Sequence[Mapping[str, Any]]) -> str:
 def main(arguments: Sequence[str]) -> None:
     sizes = [int(a) for a in arguments if a.isdigit()] or SIZES
     kept = Path(tempfile.gettempdir()) / "metagraph-participant-2.jsonl"
-    if "--anew" in arguments:
+    if "--again" in arguments:
         kept.unlink(missing_ok=True)
     rows = [json.loads(line) for line in kept.read_text().splitlines()] if kept.is_file() else []
     prepare_application()

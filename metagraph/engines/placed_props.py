@@ -40,7 +40,7 @@ def place_props(project: Project, base: Path | None) -> tuple[tuple[PlacedProp, 
             try:
                 meshes[prop.path] = read_prop(base / prop.path)
             except FileError as error:
-                notes[str(error)] = None
+                notes[error.words] = None
                 continue
         joint = project.skeleton.names.index(prop.joint) if prop.joint else -1
         x, y, z = prop.at

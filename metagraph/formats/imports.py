@@ -180,7 +180,7 @@ def import_files(
         except SkeletonMismatchError as error:
             key = make_fingerprint(clip.skeleton)
             foreign.setdefault(key, []).append((name, take, digests[path], clip))
-            reasons.setdefault(key, str(error))
+            reasons.setdefault(key, describe_error(error))
     for name, take, content, clip in faces:
         try:
             loaded.append((name, take, content, put_on_body(add_clips(project, loaded), clip)))

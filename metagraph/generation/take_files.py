@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from metagraph.common.budgets import CONVERSATION_SECONDS as LONGEST
 from metagraph.common.files import make_unforeseen_error
-from metagraph.errors import FileError
+from metagraph.errors import FileError, describe_error
 from metagraph.formats.clips import digest, find_clip_files, read_clips
 from metagraph.formats.conversations.files import SOUNDS, read_conversation
 from metagraph.formats.conversations.languages import Speaking
@@ -161,7 +161,7 @@ def read_take_batch(
         try:
             rig = find_rig(max(counts, key=lambda s: counts[s]), roles)
         except PoseError as error:
-            return TakeBatch(None, (), (), (*failures, str(error)), ())
+            return TakeBatch(None, (), (), (*failures, describe_error(error)), ())
     takes, clips, notes = [], [], []
     licences: dict[Path, str] = {}
     for done, (each, clip) in enumerate(read):
@@ -173,7 +173,7 @@ def read_take_batch(
         try:
             take = _take(rig, each, clip, tracks, licences, speaking)
         except TakeError as error:
-            failures.append(str(error))
+            failures.append(describe_error(error))
             continue
         except Exception as error:
             failures.append(str(make_unforeseen_error(each.clip, error)))

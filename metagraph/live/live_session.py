@@ -18,13 +18,12 @@ import msgspec
 
 from metagraph.common.wording import phrase
 from metagraph.graph import requests as a
-from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.model import Layer, Project
 from metagraph.live import describe
-from metagraph.live.answers import FoundAnswer, find
 from metagraph.live.camera_mimicry import see
 from metagraph.live.generating import Generating
 from metagraph.live.graph_motion import LiveGraph
-from metagraph.live.happenings import SAID, UNSAID, Happenings
+from metagraph.live.happenings import Happenings
 from metagraph.live.ledger import Ledger, OpenAsk, plan_key, reword_for_client
 from metagraph.live.limits import (
     ADDED,
@@ -42,25 +41,22 @@ from metagraph.live.limits import (
 )
 from metagraph.live.messages import (
     Describe,
-    Event,
     Generate,
     Hear,
     HeardMessage,
     Hello,
     Keypoints,
     OwnMessage,
-    Part,
     Partner,
-    Reason,
     Reply,
     Status,
     read_live_request,
-    round_seconds,
     split_message,
 )
 from metagraph.live.partner_mood import LAUGH, MOOD, find_partner_feel
 from metagraph.live.pose_stream import Stream, collect_due_frames
 from metagraph.live.said_sound import SaidSounds, join_asks
+from metagraph.live.settling import Settling
 from metagraph.live.steering import Steering, is_steering
 from metagraph.live.tape import Tape
 from metagraph.live.tick_work import Agent, Client, Open, Out, TickWork, order_requests, thin_track
@@ -72,7 +68,6 @@ from metagraph.playback.life.items import LookAt, Speech, StayFrom, find_line_st
 from metagraph.playback.life.utterances import (
     find_soon,
     goes_on,
-    is_paused,
 )
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.hearing import makers
@@ -86,7 +81,6 @@ from metagraph.speech.spoken_so_far import spoken_until
 from metagraph.speech.spoken_text import read_spoken_line
 from metagraph.speech.word_gestures import telling
 
-AGAIN = 0.25  # seconds for which a layer without room is not tried again
 TIDY = 0.25  # seconds between two clean-ups of what is over
 KEPT = 10.0  # seconds for which reports and requests of the plan are kept after they are over
 TOLD = 100  # latest reports that are kept in any case
@@ -262,7 +256,7 @@ class LiveSession:
             notes = tuple(str(phrase("left out: {what}", what=what)) for what in left_out)
             told = ask.words or ask.characters or ask.visemes or ask.audio or ask.line or ask.duration
             if not telling(ALPHABET, text) and not told and not opened:
-                silent = str(phrase("the text has nothing to say"))
+                silent = str(phrase("the text contains no words to say"))
                 return Reply(id=ident, state="done" if ask.more else "refused", why=silent, notes=notes)
             if (ask.more or opened) and not told:  # a piece of words: its blanks count
                 begins = len(ask.text) - len(ask.text.lstrip())
@@ -463,7 +457,7 @@ class LiveSession:
             dropped = self.ledger.drop(key)
             for each, ask in dropped if before is None else [(key, before), *dropped]:
                 self.happenings.stop(each, "withdrawn")
-                self._end_waiting(each, ask, "withdrawn", "taken back")
+                self._settling().end_waiting(each, ask, "withdrawn", "taken back")
                 work.close(each, "taken back")
                 work.asks.pop(each, None)
             work.asks.pop(key, None)
@@ -538,7 +532,7 @@ class LiveSession:
 
     def _plan(self, work: TickWork, out: Out) -> None:
         """Plan a tick's requests, answer them, and report others that changed because of them."""
-        now, ledger = self.now, self.ledger
+        now = self.now
         self.running.reach(now, self._edited)
         # What is taken back is not held until it is resumed.
         work.steered = [x for x in work.steered if x.what not in work.gone or x.what in work.asks]
@@ -551,185 +545,10 @@ class LiveSession:
         if not (work.asks or work.gone or work.steered or work.open or self._edited):
             return
         self._edited = False
-        for open_ in work.open.values():
-            self._end_replaced(open_)
-        watched = {
-            key: ask
-            for key, ask in ledger.known.items()
-            if not ask.settled or ask.at > now or key in work.turned
-        }
-        found = find(self.plan, watched, now - 1.0)
-        self._steering.stop_paused(work, found)
-        for key, ask in watched.items():
-            if ask.settled and ask.differs(found.get(key)):
-                self._tell_changed(key, ask, found.get(key, FoundAnswer()), out)
-        for open_ in work.open.values():
-            if open_.parts is None:
-                answer = FoundAnswer() if self._is_unsaid(open_) else found.get(open_.key, FoundAnswer())
-                reply = self._settle(open_.key, answer)
-                for each in (open_, *open_.also):
-                    out.replies[each.place] = self._tell_added(each, reply)
-            else:
-                out.replies[open_.place] = self._settle_block(open_, found)
+        self._settling().settle(work, self._steering, self.clients.values(), out)
 
-    def _settle(self, key: str, found: FoundAnswer) -> Reply:
-        """Return the reply to a request that was planned, or was not."""
-        ask = self.ledger.known[key]
-        if found.state in ("refused", "done"):
-            full = ask.lane in LAYERS and any(r.outcome in ("covered", "no-room") for r in found.reports)
-            if full and ask.at <= self.now + self.project.settings.wait:
-                self.ledger.limits.full[ask.lane, ask.client] = (self.now + AGAIN, ask.priority)
-                self.ledger.limits.turned_away(ask.lane, ask.client, ask.priority, self.now)
-            self.ledger.drop(key)
-        else:
-            self.ledger.settle(key, found)
-            if ask.lane in SAID:
-                self.happenings.promise(key, ask.client, ask.ident, self.plan)
-        why = f"too late by {ask.missed:.2f} s" if ask.missed > 0 and not found.why else found.why
-        if found.state == "refused" and not found.reports and ask.lane in SAID:
-            why = UNSAID
-        return Reply(
-            id=ask.ident,
-            state=found.said(ask.missed),  # type: ignore[arg-type]
-            layer=found.layer,
-            at=round_seconds(found.at),
-            until=round_seconds(found.until),
-            actions=tuple(found.what),
-            why=reword_for_client(why, ask.client),
-        )
-
-    def _is_unsaid(self, open_: Open) -> bool:
-        """Return whether nothing of a line is said, so that the plan only has what was said before under its
-        id.
-        """
-        before, speeches = open_.adds, self.plan.track.speeches
-        same = before is not None and self.plan.track.last_speech(open_.key) is before
-        return (
-            same and self.ledger.known[open_.key].lane in SAID and not goes_on(speeches, open_.key, self.now)
-        )
-
-    def _goes_on_from(self, open_: Open) -> bool:
-        """Return whether what is said goes on from what was said last under its id."""
-        speech, before = self.plan.track.last_speech(open_.key), open_.adds
-        return (
-            speech is not None
-            and before is not None
-            and speech is not before
-            and speech.asked == before.asked
-        )
-
-    def _end_replaced(self, open_: Open) -> None:
-        """Report that what waited under an id has ended, if something else has taken its place; so have the
-        gestures that were made for what was said.
-        """
-        if self._goes_on_from(open_):
-            return
-        gone = [] if open_.replaces is None else [(open_.key, open_.replaces)]
-        if open_.adds is not None:
-            made = [key for key in self.ledger.belonging(open_.key) if makers(key)[-1] == open_.key != key]
-            made = [key for key in made if self.ledger.known[key].settled]
-            gone += [one for key in made for one in self.ledger.drop(key)]
-        for key, ask in gone:
-            if key != open_.key:
-                self.happenings.stop(key, "replaced")
-            self._end_waiting(key, ask, "replaced", "asked again under the same id")
-
-    def _end_waiting(self, key: str, ask: OpenAsk, reason: Reason, why: str) -> None:
-        """Report that something has ended which was promised and has not begun."""
-        fixed = self.now + self.project.settings.lookahead
-        self.happenings.end_waiting(key, ask, reason, why, self.now, self.plan, fixed)
-
-    def _tell_added(self, open_: Open, reply: Reply) -> Reply:
-        """Return a reply with what has become of what was added to a line."""
-        speech, before, notes, at = (
-            self.plan.track.last_speech(open_.key),
-            open_.adds,
-            open_.notes,
-            reply.at,
-        )
-        if speech is None or before is None or not self._goes_on_from(open_):
-            return msgspec.structs.replace(reply, notes=notes)
-        if speech.timing is not None and before.timing is not None:
-            words = {(w.start, w.text) for w in speech.timing.words}
-            marks = {(m.at, m.viseme) for m in speech.timing.marks}
-            words -= {(w.start, w.text) for w in before.timing.words}
-            marks -= {(m.at, m.viseme) for m in before.timing.marks}
-            if words or marks:
-                at = round_seconds(find_line_start(speech) + min(words | marks)[0])
-            elif speech.text != before.text:  # a mark behind what was said
-                at = round_seconds(before.end)
-            else:
-                notes = (*notes, str(phrase("nothing new is said: it was said before, or its time is over")))
-        began = self.happenings.find_beginning(before)
-        if began is None and not is_paused(before.start):
-            began = find_line_start(before)
-        since = round_seconds(began)
-        if is_paused(before.start):
-            at = reply.at
-        cut = speech.length is not None and before.end > self.now  # something else cuts short what runs
-        if cut and at is not None and at >= speech.end:
-            return Reply(id=reply.id, state="refused", why=UNSAID, notes=notes)
-        return msgspec.structs.replace(reply, at=at, since=since, notes=notes)
-
-    def _settle_block(self, open_: Open, found: Mapping[str, FoundAnswer]) -> Reply:
-        """Return the reply to a block of BML: for each behaviour, and for all of them."""
-        parts: list[Part] = []
-        for key, called, word, why in open_.parts or ():
-            if why or key not in self.ledger.known:
-                parts.append(Part(id=called, do=word, state="refused", why=why or "taken back"))
-                continue
-            r = self._settle(key, found.get(key, FoundAnswer()))
-            parts.append(
-                Part(
-                    id=called,
-                    do=word,
-                    state=r.state or "refused",
-                    at=r.at,
-                    until=r.until,
-                    actions=r.actions,
-                    why=r.why,
-                )
-            )
-        states = {part.state for part in parts}
-        state = next((s for s in ("late", "planned", "done", "refused") if s in states), "done")
-        starts = [p.at for p in parts if p.at is not None]
-        ends = [p.until for p in parts if p.until is not None]
-        return Reply(
-            id=open_.ident or None,
-            state=state,  # type: ignore[arg-type]
-            at=min(starts, default=None),
-            until=max(ends, default=None),
-            notes=open_.notes,
-            actions=tuple(x for p in parts for x in p.actions),
-            parts=tuple(parts),
-            why="" if parts else "nothing in it was understood",
-            seen=open_.seen,
-        )
-
-    def _tell_changed(self, key: str, ask: OpenAsk, found: FoundAnswer, out: Out) -> None:
-        """Report to the client that an earlier answer to its request has changed."""
-        if found.state in ("refused", "done"):
-            self.ledger.drop(key)
-        else:
-            self.ledger.settle(key, found)
-        for client in [c for c in self.clients.values() if c.owner == ask.client and c.events]:
-            event = Event(
-                event="changed",
-                t=round_seconds(self.now),
-                id=ask.ident,
-                state=found.said(ask.missed),  # type: ignore[arg-type]
-                layer=found.layer,
-                at=round_seconds(found.at),
-                until=round_seconds(found.until),
-                actions=tuple(found.what),
-                why=reword_for_client(found.why, ask.client),
-            )
-            out.events.append((client.number, event))
-        if found.state in ("refused", "done"):
-            why = reword_for_client(found.why, ask.client)
-            if ask.lane in SAID:
-                self.happenings.stop(key, "dropped", why)
-            self._end_waiting(key, ask, "dropped", why)
+    def _settling(self) -> Settling:
+        return Settling(self.plan, self.now, self.project, self.ledger, self.happenings)
 
     # --- the past
 
@@ -743,7 +562,7 @@ class LiveSession:
             why = reword_for_client(
                 "; ".join(r.message for r in self.plan.reports if r.request == key), ask.client
             )
-            self._end_waiting(key, ask, "dropped", why or "something else plays")
+            self._settling().end_waiting(key, ask, "dropped", why or "something else plays")
         recent = max(RECENT, self.project.settings.memory)
         if now > self._begin + recent + CUT:
             begin, self._begin = self._begin, now - recent

@@ -53,9 +53,12 @@ _ADDED = {  # by stage: what it is called, whose causes are looked at, what help
     ),
     LIFE: (phrase("gaze, breath and posture"), "head", phrase("Turn *Gaze* down under Life.")),
     CONTACTS: (
-        phrase("contacts and the guard"),
+        phrase("hand contacts and the guard"),
         "left_hand",
-        phrase("Turn off keeping hands out of the body under Life, or skip the gesture in this stance."),
+        phrase(
+            "Turn off the guard that keeps hands out of the body (metagraph contacts --guard off), or skip "
+            "the gesture in this stance."
+        ),
     ),
 }
 _NAMES = {
@@ -433,7 +436,8 @@ class _Findings:
             share=100 * float(over.mean()),
         )
         remedy = phrase(
-            "Turn on keeping hands out of the body under Life, or skip the gesture in this stance."
+            "Turn on the guard that keeps hands out of the body (metagraph contacts --guard on), or skip "
+            "the gesture in this stance."
         )
         yield self._problem(
             "play-arm-inside",

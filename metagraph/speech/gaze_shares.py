@@ -24,7 +24,7 @@ STEP, MOST = 0.1, 6000  # seconds between samples at least, and samples at most
 Doing = Literal["addressed", "aside", "speaking", "speaking to all"]
 NAMES: dict[Doing, str] = {
     "addressed": phrase("when addressed, looks at the speaker"),
-    "aside": phrase("when listening aside, looks at the speaker"),
+    "aside": phrase("when not addressed, looks at the speaker"),
     "speaking": phrase("when speaking to one, looks at that one"),
     "speaking to all": phrase("when speaking to all, looks at one of them"),
 }

@@ -14,6 +14,7 @@ from statistics import median
 from typing import Any, Literal
 
 from metagraph.common.wording import phrase
+from metagraph.errors import describe_error
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Layer, Project
@@ -177,7 +178,7 @@ class Review:
         try:
             bare = edits.remove_actions(project, again) if again else project
         except EditError as error:
-            return AcceptedProposals(project, (), dict.fromkeys(known, str(error)))
+            return AcceptedProposals(project, (), dict.fromkeys(known, describe_error(error)))
         wanted = [c for c in known if self.found.proposals[c].confidence >= above]
         along = {r for c in wanted for r in self._resting(bare, c)}
         taken = accept(bare, self.found, 0.0, {*wanted, *along})

@@ -23,6 +23,8 @@ from app.features.labelling import review_words
 from app.languages.catalogues import Marked, collect_texts, find_marked, read_catalogue, write_catalogue
 from app.look.domain_words import KIND_TITLES
 from app.translation import FOLDER, format_number, tr, tr_context, tr_error, tr_phrase, tr_plural
+from app.widgets.request_menu import describe_request
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.common.wording import Phrase, phrase, plural_phrase
 from metagraph.engines.targets import registry
 from metagraph.errors import FileError
@@ -31,10 +33,11 @@ from metagraph.formats.clip_readers import list_clip_suffixes
 from metagraph.formats.conversations.files import read_conversation
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import open_project
-from metagraph.graph import edits
+from metagraph.graph import edits, requests
 from metagraph.graph.check import check_project
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
+from metagraph.playback.timing.handles import BLOCKS
 from metagraph.suggest.details import with_timing
 from metagraph.suggest.propose import propose
 from tests.app.catalogue_texts import catalogue_texts
@@ -138,7 +141,7 @@ def test_what_checks_find_is_said_in_the_language_and_stays_english_for_programs
     (found,) = [p for p in check_project(project) if p.code == "likelihood"]
     assert tr_phrase(found.message) == found.message == "'rest beat lf' has likelihood -1 and never plays"
     translation.choose("de")
-    assert tr_phrase(found.message) == "„rest beat lf“ hat die Häufigkeit -1 und spielt nie"
+    assert tr_phrase(found.message) == "„rest beat lf“ hat die Häufigkeit -1 und wird nie abgespielt"
     assert tr_phrase(found.remedy) == "Setzen Sie den Wert auf mehr als 0."
     assert found.message == "'rest beat lf' has likelihood -1 and never plays"
 
@@ -185,7 +188,7 @@ def test_what_targets_write_and_lose_is_said_in_the_language(english: None) -> N
     (counted,) = [loss for loss in registry.get_target("scxml").losses if "blend their seam" in loss.words]
     loops = replace(counted, count=lambda project: 3).told(Project())
     assert loops == "3 loops blend their seam here but jump at the seam there"
-    assert tr_phrase(loops) == "3 Schleifen blenden hier ihre Naht, springen dort aber an ihr"
+    assert tr_phrase(loops) == "3 Schleifen werden hier an ihrer Naht überblendet, springen dort aber"
 
 
 def without_words(said: str, known: Collection[str]) -> Iterator[str]:
@@ -316,6 +319,29 @@ def test_what_a_module_holds_follows_the_language(english: None) -> None:
     assert KIND_TITLES["gesture"] == "Gesture" and len(KIND_TITLES) == 4
     translation.choose("de")
     assert KIND_TITLES["gesture"] == "Geste" and dict(KIND_TITLES)["stance"] == "Haltung"
+
+
+def test_looks_and_phases_are_said_in_the_language(english: None) -> None:
+    looks = [requests.Look(to=to, at=0.0) for to in ("partner", "ahead", "door", (0.0, 1.0, 1.0))]
+    assert [describe_request(look, Project()) for look in looks] == [
+        "look at partner",
+        "look ahead",
+        "look at door",
+        "look at a point",
+    ]
+    translation.choose("de")
+    assert [describe_request(look, Project()) for look in looks] == [
+        "Blick: Gegenüber",
+        "Blick geradeaus",
+        "Blick: door",
+        "Blick: ein Punkt",
+    ]
+    assert [get_vocabulary_word(block) for block in BLOCKS] == [
+        "Vorbereitung",
+        "Höhepunkt",
+        "Halten",
+        "Rückzug",
+    ]
 
 
 @pytest.mark.parametrize(

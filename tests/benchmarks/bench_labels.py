@@ -3,10 +3,10 @@
 On the sample clips, on labelled sets made by others, and on sets made from the sample clips
 (`tests.label_zoo`), each left out of whatever is learned from the others: with names and motion, with names
 alone and with names hidden, by field. A stance counts as right where most clips proposed for it are of that
-stance; "all" are clips all of whose kind, layer, stance and end stance are right; "none" those that are none
-of the four kinds and are marked so. Then: whether what is wrong is flagged for a look, how often what is
-said with what confidence is right, how much is right after a person's first looks, and what happens with
-wrong names. "seen" are sets that whoever wrote the product looked at. Prints the tables of
+stance; "all four" are clips all of whose kind, layer, stance and end stance are right; "rightly skipped" are
+those that are none of the four kinds and are marked so. Then: whether what is wrong is flagged for a look,
+how often what is said with what confidence is right, how much is right after a person's first looks, and what
+happens with wrong names. "seen" are sets that whoever wrote the product looked at. Prints the tables of
 docs/contributing/labelling-figures.md.
 """
 
@@ -47,6 +47,7 @@ from tests.label_zoo.measure import (  # noqa: E402
 TRUTH = ROOT / "tests" / "suggest" / "truth"
 WAYS = {"names and motion": ("name", "motion"), "names alone": ("name",), "names hidden": ("motion",)}
 WHOLE = "names and motion"
+HEADS = {"clip": "all four", "none": "rightly skipped"}
 LOOKS = (0, 5, 10, 20)
 SEEDS = 5
 UNSURE = 0.7  # below this somebody looks at it anyway
@@ -213,7 +214,7 @@ def groups(results: Sequence[tuple[LabelSet, dict[str, Any]]]) -> dict[str, dict
 def show(rows: Mapping[str, Mapping[str, Any]]) -> None:
     """Print the tables of what was measured."""
     fields = (*FIELDS, "clip", "none")
-    heads = [f.replace("_", " ").replace("clip", "all") for f in fields]
+    heads = [HEADS.get(f, f.replace("_", " ")) for f in fields]
     for way in WAYS:
         lines = []
         for name, result in rows.items():
@@ -227,7 +228,7 @@ def show(rows: Mapping[str, Mapping[str, Any]]) -> None:
         cells = [fraction(f["flagged"], f["clips"]), fraction(f["wrong"], f["clips"])]
         cells += [share(f["both"], f["flagged"]), share(f["both"], f["wrong"])]
         lines.append([name, *cells, *(fraction(f[f"{c} wrong"], f[c]) for c in CAUSES)])
-    columns = ["set", "flagged", "wrong", "precision", "recall", *(f"wrong of {c}" for c in CAUSES)]
+    columns = ["set", "flagged", "wrong", "precision", "recall", *(f"wrong among {c}" for c in CAUSES)]
     table("What needs a look", columns, lines, "Flags against what is wrong, with names and motion.")
     bins = [f"{a:.2f}–{min(b, 1):.2f}" for a, b in pairwise(BINS)]
     for kind in ("made by others", "zoo"):
@@ -254,7 +255,8 @@ def show(rows: Mapping[str, Mapping[str, Any]]) -> None:
         if result["looks"][0]["all"]:
             states = [result["looks"][n] for n in LOOKS]
             cells = [
-                f"{share(s['rest right'], s['rest'])} ({share(s['all right'], s['all'])}; {s['told']} told)"
+                f"{share(s['rest right'], s['rest'])} "
+                f"({share(s['all right'], s['all'])}; {s['told']} corrected)"
                 for s in states
             ]
             lines.append([name, *cells])
@@ -273,7 +275,11 @@ def show_wrong_names(sets: Sequence[tuple[LabelSet, Counter[str]]]) -> None:
                 for f in ("told", "unsure")
             ]
             lines.append([one.name, *cells])
-    columns = ("set", "wrong: told", "wrong: told or unsure", "right: told", "right: told or unsure")
+    columns = (
+        "set",
+        *("wrong names: conflict", "wrong names: conflict or unsure"),
+        *("right names: conflict", "right names: conflict or unsure"),
+    )
     table("With wrong names", columns, lines)
 
 

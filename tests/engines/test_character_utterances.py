@@ -30,9 +30,10 @@ class Talker:
 
     def go(self, ticks: int, step: float = TICK) -> None:
         for _ in range(ticks):
-            self.character.update(self.character.now + step)
+            before = self.character.now
+            self.character.update(before + step)
             now, speeches = self.character.now, self.character.plan.track.speeches
-            self.begun |= {(s.id, s.asked) for s in speeches if s.start <= now and s.end > s.start}
+            self.begun |= {(s.id, s.asked) for s in speeches if s.start <= now and s.end > before}
             self.ends.update(e.meta for e in self.character.events() if e.reason)
 
     def choose(self) -> None:

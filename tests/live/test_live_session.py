@@ -225,7 +225,7 @@ def test_words_that_come_after_their_time_are_said_when_they_come(session: LiveS
 
 def test_what_has_nothing_to_be_heard_is_refused(session: LiveSession) -> None:
     reply = one(session, {"do": "say", "text": "\U0001f600 ..."})
-    assert (reply["state"], reply["why"]) == ("refused", "the text has nothing to say")
+    assert (reply["state"], reply["why"]) == ("refused", "the text contains no words to say")
     left = one(session, {"do": "say", "text": "<think>Well?</think>Good."})
     assert (left["state"], *left["notes"]) == ("planned", "left out: thinking")
 

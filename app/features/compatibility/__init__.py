@@ -36,7 +36,7 @@ def contribute(shell: Shell) -> Contribution:
                 tr("&Compatibility…"),
                 show,
                 ("Ctrl+K",),
-                tip=tr("Show which clip enters and leaves which stance without a jump"),
+                tip=tr("Show which clips begin and end in which stance without a jump"),
                 enabled=lambda: bool(shell.document.project.clips),
                 when="meta",
                 study="labels",

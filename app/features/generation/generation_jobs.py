@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 KINDS = {"matching": "Matching", "flow-vae": "Flow-VAE", "moglow": "MoGlow", "cvae": "CVAE"}
 FOLDER = "generated"  # beside the project file, where new clips are kept
 LEAST, MOST = 1.0, 8.0  # seconds of clips cut from takes
-UNCUT = tr_noop("Make more minutes, lower Chance, or train longer.")
+UNCUT = tr_noop("Generate more minutes, lower Randomness, or train longer.")
 Progress = Callable[[int, int], None]
 Cancelled = Callable[[], bool]
 

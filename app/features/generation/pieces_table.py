@@ -21,7 +21,7 @@ from metagraph.generation.networks import FPS
 from metagraph.generation.poses import encode_clip
 from metagraph.graph.model import Kind, Limb
 
-HEADS = make_lazy_texts(lambda: (tr("Piece"), tr("Length"), tr("Label"), tr("Confidence"), tr("Arm")))
+HEADS = make_lazy_texts(lambda: (tr("Piece"), tr("Length"), tr("Kind"), tr("Confidence"), tr("Arm")))
 KIND, SURE, LIMB = 2, 3, 4  # columns
 KINDS: tuple[Kind, ...] = ("gesture", "fidget")
 LIMBS: tuple[Limb, ...] = ("both", "left", "right")
@@ -86,7 +86,7 @@ class PiecesTable(QTableWidget):
                 SURE,
                 QTableWidgetItem(f"{100 * piece.sure:.0f} %" if piece.sure > 0 else ""),
             )
-            self._offer(n, KIND, KINDS, piece.kind, tr("Label of {name}", name=piece.clip.name))
+            self._offer(n, KIND, KINDS, piece.kind, tr("Kind of {name}", name=piece.clip.name))
             self._offer(n, LIMB, LIMBS, piece.limb, tr("Arm of {name}", name=piece.clip.name))
         self.blockSignals(False)
         self.viewport().update()
@@ -106,7 +106,7 @@ class PiecesTable(QTableWidget):
         self.setCellWidget(row, column, box)
 
     def _labelled(self, row: int) -> None:
-        """A label was chosen: whoever did that is sure of it."""
+        """A kind or an arm was chosen: whoever did that is sure of it."""
         kind, limb = self._choice(row, KIND), self._choice(row, LIMB)
         self.pieces[row] = replace(self.pieces[row], kind=KINDS[kind], limb=LIMBS[limb], sure=0.0)
         self.setItem(row, SURE, QTableWidgetItem(""))

@@ -171,7 +171,7 @@ def contribute(shell: Shell) -> Contribution:
                 tr("Manual page of this &panel"),
                 read_of_panel,
                 ("F1",),
-                tip=tr("Read about the panel that has the keyboard"),
+                tip=tr("Open the manual page of the active panel"),
             ),
             Command("keys", "&Help", "", tr("&Keyboard shortcuts"), keys, ("Shift+F1",), study=True),
             Command(

@@ -111,7 +111,7 @@ class NewsDialog(QDialog):
     def _found(self, release: Release | None) -> None:
         self.look.setEnabled(is_asking_allowed(self.settings))
         if release is None:
-            self.said.setText(tr("This is the newest Metagraph."))
+            self.said.setText(tr("This is the newest version of Metagraph."))
         else:
             self._show(release)
 

@@ -87,7 +87,7 @@ COLUMNS: tuple[Column, ...] = make_lazy_texts(
             tr("Uses"),
             lambda f, e: _count(len(f.uses(e))),
             "uses",
-            55,
+            72,
             tr("How many actions use the clip"),
             True,
         ),
@@ -110,7 +110,7 @@ COLUMNS: tuple[Column, ...] = make_lazy_texts(
         ),
         Column(
             "color",
-            tr("Label"),
+            tr("Colour"),
             lambda f, e: COLOR_TITLES[f.mark(e).color],
             "color",
             80,

@@ -35,7 +35,7 @@ def contribute(shell: Shell) -> Contribution:
                 "mimic_camera",
                 "&Motion",
                 "make",
-                tr("Mimic a &camera…"),
+                tr("Mimic from &camera…"),
                 mimic_camera,
                 tip=tr("Film yourself, and make the character copy your stances"),
                 enabled=can,

@@ -40,7 +40,7 @@ class CameraDialog(QDialog):
         self.shell, self._show = shell, show
         self._filming = self._stopped = False
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle(tr("Mimic a camera"))
+        self.setWindowTitle(tr("Mimic from camera"))
         self.setMinimumWidth(420)
         layout = QVBoxLayout(self)
         form = QFormLayout()

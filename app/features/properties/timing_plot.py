@@ -28,9 +28,10 @@ from app.stage.session import StageSession
 from app.translation import make_lazy_texts, tr, tr_phrase
 from app.widgets.restyling import set_sheet
 from app.widgets.still_plot import make_number_axes
+from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.graph.model import Action, Project
 from metagraph.motion.clip import Clip
-from metagraph.playback.timing.handles import BANDS, HANDLES, PHASES, handle_times, move_handle
+from metagraph.playback.timing.handles import BLOCKS, HANDLES, PHASES, handle_times, move_handle
 from metagraph.playback.timing.speed_curves import measure_action_speed
 
 WORDS = make_lazy_texts(
@@ -76,7 +77,7 @@ class TimingPlot(QWidget):
         self.hold = pg.LinearRegionItem(movable=False)
         self.hold.setZValue(-6)
         self.plot.addItem(self.hold)
-        self.bands = [pg.TextItem(word, anchor=(0.5, 0.0)) for word in BANDS]
+        self.bands = [pg.TextItem(get_vocabulary_word(phase), anchor=(0.5, 0.0)) for phase in BLOCKS]
         for band in self.bands:
             band.span = None
             self.plot.addItem(band, ignoreBounds=True)
@@ -302,12 +303,15 @@ class TimingPlot(QWidget):
         each, measure = wide / max(high - low, 1e-6), self.fontMetrics()
         taken: dict[int, list[tuple[float, float]]] = {}
         worded = tall >= WORDED
-        for band, word in zip(self.bands, BANDS, strict=True):
+        for band, phase in zip(self.bands, BLOCKS, strict=True):
             if band.span is None:
                 band.setVisible(False)
                 continue
             a, b = band.span
-            middle, half = ((a + b) / 2 - low) * each, measure.horizontalAdvance(word) / 2 + 3
+            middle, half = (
+                ((a + b) / 2 - low) * each,
+                measure.horizontalAdvance(get_vocabulary_word(phase)) / 2 + 3,
+            )
             seen = worded and 2 * half <= (b - a) * each
             band.setVisible(seen)
             if seen:

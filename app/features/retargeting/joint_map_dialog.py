@@ -189,7 +189,7 @@ class JointMapDialog(QDialog):
         header = self.tree.header()
         header.setStretchLastSection(True)
         self.tree.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        for column, width in enumerate((170, 180, 136, 84)):
+        for column, width in enumerate((170, 180, 150, 84)):
             self.tree.setColumnWidth(column, width)
         header.setSectionResizeMode(3, QHeaderView.ResizeMode.Fixed)
         self.tree.currentItemChanged.connect(self._mark)

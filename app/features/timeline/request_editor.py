@@ -24,7 +24,13 @@ from app.stage.performance import StagePerformance
 from app.translation import make_lazy_texts, tr, tr_error, tr_noop
 from app.widgets.lane_geometry import describe_outcome
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
-from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS, describe_mood, describe_request
+from app.widgets.request_menu import (
+    LOOK_TARGETS,
+    MODE_WORDS,
+    MOOD_WORDS,
+    describe_mood,
+    describe_request,
+)
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, LIMBS, MODES, Project
 from metagraph.graph.timeline_edits import find_lane
@@ -237,7 +243,7 @@ class RequestEditor(QDialog):
             lane = find_lane(ask, project)
             items = [(x.name, x.id) for x in project.actions() if x.layer == lane and x.kind != "stance"]
         elif name == "to":
-            items = [(n, n) for n in dict.fromkeys(("user", "ahead", *project.points))]
+            items = [(LOOK_TARGETS.get(n, n), n) for n in dict.fromkeys(("user", "ahead", *project.points))]
         else:
             return None
         box = ComboBox(self)

@@ -11,6 +11,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 from metagraph.common.wording import phrase
+from metagraph.errors import describe_error
 from metagraph.graph import anatomy, ids
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import find_free_name
@@ -75,7 +76,7 @@ def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]
         try:
             twin = mirror(entry.motion, pairs)
         except ValueError as error:
-            raise EditError(str(error)) from None
+            raise EditError(describe_error(error)) from None
         distance = float(measure_pose_distance(twin.skeleton, entry.motion.poses(), twin.poses()).max())
         if distance < SAME and not _faces_differ(entry.motion, twin):
             raise EditError(

@@ -13,6 +13,7 @@ from functools import cached_property
 from typing import Literal
 
 from metagraph.common.wording import join_phrases, phrase, plural_phrase
+from metagraph.errors import describe_error
 from metagraph.graph import ids
 from metagraph.graph.clip_source import get_source_clip, with_source
 from metagraph.graph.editing.retargeting import Bringing
@@ -272,8 +273,8 @@ class _Clips:
         try:
             entry = self._fitted(entry)
         except (RetargetError, ClipError, SkeletonMismatchError) as error:
-            self.lost[ident] = str(error)
-            self.things.append(TakenItem("clip", None, entry.name, "left out", str(error)))
+            self.lost[ident] = why = describe_error(error)
+            self.things.append(TakenItem("clip", None, entry.name, "left out", why))
             return None
         name = find_free_name(entry.name, self.names)
         made = ids.make_id(self.project, "c", entry.path, entry.take, name, more=self.entries)

@@ -16,7 +16,6 @@ from metagraph.playback.timing.phases import find_phases
 HANDLES = ("start", "end", "in", "out", "exit", "stroke", "ready", "hold", "relax")
 PHASES = ("ready", "hold", "relax")  # handles of a gesture's phases
 MOMENTS = ("earliest_exit", "ready", "stroke", "stroke_end", "relax")  # of Timing, seconds of the clip
-BANDS = ("prepare", "stroke", "hold", "retract")
 BLOCKS = ("preparation", "stroke", "hold", "retraction")
 EDGES = ("start", "ready", "hold", "relax", "end")  # handles between which a gesture's phases are
 WORDS = {

@@ -821,3 +821,32 @@ def test_a_narrow_windows_header_still_has_all_its_parts(toys, width):
     toys.window.resize(1680, 1020)
     toys.pause(50)
     assert (header.name.text(), problems.toolButtonStyle()) == wide and header.name.isVisible()
+
+
+def test_where_the_header_is_narrow_a_dot_says_unsaved_and_no_part_is_pressed_together(drive, sample):
+    header = drive.window.header
+    drive.document.load(edits.update_each(sample, {}), None)
+    drive.files.opened.emit()
+    drive.window.resize(1900, 1000)
+    drive.settle()
+    assert "unsaved" in header.name.text()
+    others = header.sizeHint().width() - header.name.sizeHint().width()
+    drive.window.resize(others + header.name.sizeHint().width() - 10, 1000)
+    drive.settle()
+    assert "unsaved" not in header.name.text() and "•" in header.name.text()
+    assert "unsaved" in header.name.toolTip()
+    assert header.sizeHint().width() <= header.width()
+    drive.window.resize(1680, 1020)
+    drive.settle()
+    assert "unsaved" in header.name.text()
+
+
+def test_undo_names_what_it_undoes_and_stands_alone_where_there_is_nothing(drive, sample):
+    drive.document.load(edits.update_each(sample, {}), None)
+    drive.files.opened.emit()
+    drive.settle()
+    assert drive.actions["undo"].text() == "&Undo"
+    clip = next(iter(drive.document.project.clips))
+    drive.document.edit("Rename clip", lambda p: edits.rename_clip(p, clip, "another"))
+    drive.settle()
+    assert drive.actions["undo"].text() == "&Undo Rename clip"

@@ -584,15 +584,15 @@ def test_what_is_written_over_the_character_leaves_its_face_free(drive, lines):
     stage.deleteLater()
 
 
-def test_why_something_is_proposed_is_told_whole(drive):
+def test_a_long_reason_is_shown_whole(drive, qtbot):
     from app.features.labelling.review_fields import ReviewFields, ReviewRow
-    from tests.app.painted_text import painted
 
-    fields = ReviewFields(drive.session, drive.window)
-    fields.resize(380, 400)
-    why = " ".join(f"word{n}" for n in range(60))
-    fields.show_rows([ReviewRow("layer", "Layer", (("arms", "Arms"),), "arms", 1.0, why)], "layer")
-    said = painted(fields)
-    assert "word59" in " ".join(text.text for text in said)
-    assert max(text.rect.bottom() for text in said) <= fields.height()
-    fields.deleteLater()
+    fields = ReviewFields(drive.session)
+    qtbot.addWidget(fields)
+    heights = []
+    for times in (1, 4, 8):
+        reason = "the arms move, hips and legs do not " * times
+        fields.show_rows([ReviewRow("layer", "Layer", [("arms", "Arms")], "arms", 1.0, reason)], "layer")
+        fields.resize(380, fields.sizeHint().height())
+        heights.append(fields.height())
+    assert heights[0] < heights[1] < heights[2] and heights[2] - heights[1] > 3 * 14

@@ -11,6 +11,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
+from app import translation
 from app.project import watching
 from app.project.autosave import state_folder
 from app.project.kept_maps import keep_map, read_joint_maps
@@ -151,6 +152,20 @@ def test_a_joint_is_corrected_by_hand_and_what_is_missing_is_said(own, folder):
     drive.wait(lambda: len(drive.document.project.clips) == 3)
     (found,) = drive.document.project.joint_maps.values()
     assert found.of("LeftHand").why == "chosen by hand"
+
+
+def test_how_a_skeleton_differs_is_said_in_the_language(own, folder):
+    dialog = bring(own, folder, "other0")
+    why = dialog.strangers.why
+    assert why in dialog.details.text()
+    translation.choose("de")
+    try:
+        assert translation.tr_phrase(why) != why
+        dialog._say()
+        assert translation.tr_phrase(why) in dialog.details.text()
+    finally:
+        translation.choose("en")
+    dialog.reject()
 
 
 @pytest.mark.nightly
