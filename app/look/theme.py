@@ -193,6 +193,9 @@ def make_style_sheet(look: WindowTheme) -> str:
     QDockWidget > QWidget {{ background: {t.panel}; }}
     QToolBar {{ background: {t.panel}; border: none; border-bottom: 1px solid {t.line}; padding: 5px 8px; spacing: 4px; }}
     QToolBar QToolButton {{ padding: 5px 9px; }}
+    QToolBar[slim="1"] QToolButton {{ padding: 5px 6px; }}
+    QToolBar[slim="2"] QToolButton {{ padding: 5px 4px; }}
+    QToolBar QToolButton#qt_toolbar_ext_button {{ padding: 0; }}
     QToolBar::separator {{ background: {t.line}; width: 1px; margin: 6px 4px; }}
     QStatusBar {{ background: {t.panel}; color: {t.dim}; border-top: 1px solid {t.line}; }}
     QStatusBar::item {{ border: none; }}

@@ -26,6 +26,8 @@ def replace_window(old: Window, new: Window) -> None:
     new.shell.files.opened.emit()
     _copy_session(old.shell.stage.session, new.shell.stage.session)
     new.show()
+    if old.isActiveWindow():  # the keyboard goes on, too
+        new.activateWindow()
     new.load_late_panels_soon()
     old.replaced = True
     old.close()

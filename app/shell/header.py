@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from html import escape
 
 from PySide6.QtCore import QEvent, QSize, Qt
-from PySide6.QtGui import QFont, QFontMetrics
-from PySide6.QtWidgets import QLabel, QSizePolicy, QToolBar, QWidget
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QLabel, QSizePolicy, QToolBar, QToolButton, QWidget
 
 from app.look.theme import get_theme
 from app.project.document import Document
@@ -18,9 +18,9 @@ from app.shell.context import HeaderItem
 from app.stage.session import StageSession
 from app.translation import tr
 
-UNSAVED = "•"  # for the words that say so, where they have no room
-SIDES = 18  # pixels beside the name
 NARROW, WIDE = 100, 1600  # pixels of the project's name, and of a window with room for three times that
+UNSAVED = "•"  # for the words that say so, where they have no room
+LEVELS = 4  # of giving way: a dot for "unsaved"; closer buttons; closer ones and fewer words; no name
 
 
 class Header(QToolBar):
@@ -40,9 +40,10 @@ class Header(QToolBar):
         self.setMovable(False)
         self.setIconSize(QSize(18, 18))
         self.name = QLabel(self)
-        self.name.setContentsMargins(SIDES // 3, 0, SIDES - SIDES // 3, 0)
+        self.name.setContentsMargins(6, 0, 12, 0)
         self.name.setTextFormat(Qt.TextFormat.RichText)
-        self.addWidget(self.name)
+        self._name_action = self.addWidget(self.name)
+        self._level, self._wider, self._fitting = 0, 0, False
         items = tuple(items)
         for side in ("left", "middle", "right"):
             for item in items:
@@ -67,26 +68,72 @@ class Header(QToolBar):
         room = NARROW if self.width() < WIDE else 3 * NARROW
         name = self.name.fontMetrics().elidedText(d.project.name, Qt.TextElideMode.ElideMiddle, room)
         self.name.setToolTip(f"{d.project.name}, {saved}")
-        if not self._has_room(name, saved):
+        if self._level:
             saved = "" if d.path is not None and not d.dirty else UNSAVED
         words = f"<b>{escape(name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>"
         if words != self.name.text():  # rich text is laid out again each time
             self.name.setText(words)
 
-    def _has_room(self, name: str, saved: str) -> bool:
-        """Return whether the words stand whole beside the other parts, or would press them together."""
-        bold = QFont(self.name.font())
-        bold.setBold(True)
-        wanted = QFontMetrics(bold).horizontalAdvance(f"{name}  ")
-        wanted += self.name.fontMetrics().horizontalAdvance(saved) + SIDES
-        others = self.sizeHint().width() - self.name.sizeHint().width()
-        return others + wanted <= self.width()
+    # --- room
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if (event.size().width() < WIDE) != (event.oldSize().width() < WIDE):
+            self.refresh()
+        self._fit()
 
     def event(self, event: QEvent) -> bool:
-        out = super().event(event)
-        if event.type() in (QEvent.Type.LayoutRequest, QEvent.Type.Resize):  # a part got other words, or all
-            self.refresh()
+        if event.type() == QEvent.Type.LayoutRequest:
+            self._fit()
+        return super().event(event)
+
+    def _fit(self) -> None:
+        """Let parts give way until all have room: words for "unsaved" first, the project's name
+        last, which the window's title has too. Without this, the last buttons would be hidden.
+        """
+        if self._fitting:
+            return
+        if self._measure() <= self.width() and (self._level == 0 or self.width() < self._wider):
+            return
+        self._fitting, self._wider = True, 0
+        for level in range(LEVELS + 1):
+            self._give_way(level)
+            needed = self._measure()
+            if needed <= self.width() or level == LEVELS:
+                break
+            self._wider = needed
+        self._fitting = False
+
+    def _measure(self) -> int:
+        """Return the width that all parts need."""
+        bar, margins = self.layout(), self.contentsMargins()
+        assert bar is not None
+        frame = bar.contentsMargins()
+        out = margins.left() + margins.right() + frame.left() + frame.right()
+        for action in self.actions():
+            part = self.widgetForAction(action)
+            if part is not None and action.isVisible():
+                inner = part.layout()
+                if inner is not None:
+                    inner.activate()
+                out += max(0, part.sizeHint().width()) + bar.spacing()
         return out
+
+    def _give_way(self, level: int) -> None:
+        if level == self._level:
+            return
+        self._level = level
+        self.setProperty("slim", str(min(level - 1, 2)) if level > 1 else "")
+        style = Qt.ToolButtonStyle
+        for button in self.findChildren(QToolButton):
+            if button.property("gives_way"):
+                button.setToolButtonStyle(
+                    style.ToolButtonIconOnly if level > 2 else style.ToolButtonTextBesideIcon
+                )
+            button.style().polish(button)
+            button.updateGeometry()
+        self._name_action.setVisible(level < LEVELS)
+        self.refresh()
 
 
 def _stretch(parent: QWidget) -> QWidget:

@@ -40,6 +40,7 @@ from app.stage.problem_watch import ProblemWatch
 from app.stage.stage import Stage
 from app.translation import tr
 from app.widgets.drop_frame import DropFrame
+from app.widgets.within_screen import FRAME
 from metagraph.common.studio import get_studio
 
 FIRST_THEME = "dark"
@@ -85,7 +86,6 @@ class WindowShell:
 
 
 SIZE = QSize(1680, 1020)  # of a new window, where the screen has room for it
-FRAME = QSize(4, 40)  # what a desktop puts around a window, at most
 
 
 def fit_screen(room: QSize) -> QSize:

@@ -30,6 +30,7 @@ from app.widgets.making import make_widget
 from app.widgets.mask_weights import MaskWeights
 from app.widgets.quiet_fields import DoubleSpinBox, Slider, SpinBox
 from app.widgets.tree_items import list_items_below
+from app.widgets.within_screen import resize_within_screen
 from metagraph.graph import edits
 from metagraph.graph.manual.machine import State
 from metagraph.graph.model import Action, Project
@@ -66,7 +67,7 @@ class MaskDialog(QDialog):
         self.weights = MaskWeights(document.project, self._first())
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(self._title())
-        self.resize(760, 660)
+        resize_within_screen(self, 760, 660)
         layout = QVBoxLayout(self)
         words = QLabel(
             tr(

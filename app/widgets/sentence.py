@@ -64,10 +64,21 @@ class Sentence(QLabel):
 
     def _fit(self) -> None:
         measure, width = self.fontMetrics(), max(20, self.width() - 2)
-        two = self.height() >= 2 * measure.height() - 2 and measure.horizontalAdvance(self.words) > width
-        room = 2 * width - 60 if two else width  # the first line ends with a whole word
-        shown = measure.elidedText(self.words, Qt.TextElideMode.ElideRight, max(20, room))
+        shown = self.words
+        if measure.horizontalAdvance(shown) > width:
+            first = self._first_line(width) if self.height() >= 2 * measure.height() - 2 else 0
+            rest = measure.elidedText(self.words[first:].strip(), Qt.TextElideMode.ElideRight, width)
+            shown = f"{self.words[:first]}\n{rest}" if first else rest
         if shown != self.text():
             self.setText(shown)
-            self.setToolTip(self.words if shown != self.words else "")
+            self.setToolTip(self.words if " ".join(shown.split()) != self.words else "")
             self.setAccessibleName(self.words)
+
+    def _first_line(self, width: int) -> int:
+        """Return how many letters of whole words a line has room for."""
+        measure, end = self.fontMetrics(), 0
+        for at in (n for n, letter in enumerate(self.words) if letter == " "):
+            if measure.horizontalAdvance(self.words[:at]) > width:
+                break
+            end = at
+        return end

@@ -139,19 +139,21 @@ def _without_junk(clips: list[Clip], as_is: Collection[str]) -> list[Clip]:
     junk = [clip for clip in short if _unnamed(clip) and is_bind_pose(clip)]
     poses = [clip for clip in short if clip not in junk]
     if poses:
-        told = f"{', '.join(repr(clip.name) for clip in poses)}: one frame only, a pose"
+        names = ", ".join(repr(clip.name) for clip in poses)
+        told = phrase("{names}: one frame only, a pose", names=names)
         poses = [replace(clip, notes=(*clip.notes, told)) for clip in poses]
     kept = [*(clip for clip in clips if clip.frames > 1), *poses]
     if not junk:
         return kept
     made = ONE_FRAME not in as_is
     skipped = tuple(
-        Repair(ONE_FRAME, f"skipped {c.name!r}: a bind pose of one frame", made, n)
+        Repair(ONE_FRAME, phrase("skipped '{name}': a bind pose of one frame", name=c.name), made, n)
         for n, c in enumerate(junk, len(kept))
     )
     if not made:
         return [*kept, *(note_repair(clip, repair) for clip, repair in zip(junk, skipped, strict=True))]
-    told = f"skipped {', '.join(repr(clip.name) for clip in junk)}: a bind pose of one frame"
+    names = ", ".join(repr(clip.name) for clip in junk)
+    told = phrase("skipped {names}: a bind pose of one frame", names=names)
     kept[0] = replace(kept[0], notes=(*kept[0].notes, told))
     return [replace(clip, repairs=(*clip.repairs, *skipped)) for clip in kept]
 

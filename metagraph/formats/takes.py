@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import join_phrases, phrase
 from metagraph.formats.stray_poses import StrayPoses, find_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip, Repair
@@ -69,9 +70,9 @@ def take_repair(raw: str, name: str, stem: str, as_is: Collection[str]) -> tuple
         return name, None
     made = NAME not in as_is
     words = (
-        f"named after its file instead of '{raw}'"
+        phrase("named after its file instead of '{name}'", name=raw)
         if name == stem
-        else "the names of the rig and the layer were removed from its name"
+        else phrase("the names of the rig and the layer were removed from its name")
     )
     return name if made else raw, Repair(NAME, words, made)
 
@@ -85,7 +86,9 @@ def note_repair(clip: Clip, repair: Repair | None) -> Clip:
 
 def repair_note(repair: Repair) -> str:
     """Return the note of a repair that was made, or was not."""
-    return repair.words if repair.made else f"left as it is in the file, without this: {repair.words}"
+    if repair.made:
+        return repair.words
+    return phrase("left as it is in the file, without this: {repair}", repair=repair.words)
 
 
 def guess_frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
@@ -127,24 +130,46 @@ def drop_stray_poses(
     return [_without(clip, some, as_is) for clip, some in zip(clips, found, strict=True)]
 
 
+def _tell_bind(end: str, count: int) -> str:
+    """Return what is said of bind poses at an end of a clip: "first" or "last"."""
+    if count == 1:
+        return (
+            phrase("its first frame was the bind pose and was removed")
+            if end == "first"
+            else phrase("its last frame was the bind pose and was removed")
+        )
+    return (
+        phrase(
+            "its first {count} frames were the bind pose or on the way from it, and were removed", count=count
+        )
+        if end == "first"
+        else phrase(
+            "its last {count} frames were the bind pose or on the way to it, and were removed", count=count
+        )
+    )
+
+
 def _without(clip: Clip, found: StrayPoses, as_is: Collection[str]) -> Clip:
     if found.first or found.last:
         made = BIND_POSE not in as_is
         told = [
-            f"its {end} frame was the bind pose and was removed"
-            if count == 1
-            else f"its {end} {count} frames were the bind pose or on the way {way} it, and were removed"
-            for end, way, count in (("first", "from", found.first), ("last", "to", found.last))
-            if count
+            _tell_bind(end, count) for end, count in (("first", found.first), ("last", found.last)) if count
         ]
-        repair = Repair(BIND_POSE, "; ".join(told), made)
+        repair = Repair(BIND_POSE, join_phrases(told, "; "), made)
     if found.lone:
         mended = LONE_FRAME not in as_is
         words = (
-            f"frame {found.lone[0] + 1} was unlike both its neighbours and was interpolated between them"
+            phrase(
+                "frame {frame} was unlike both its neighbours and was interpolated between them",
+                frame=found.lone[0] + 1,
+            )
             if len(found.lone) == 1
-            else f"{len(found.lone)} frames (the first is {found.lone[0] + 1}) were unlike their neighbours "
-            "and were interpolated between them"
+            else phrase(
+                "{count} frames (the first is {frame}) were unlike their neighbours and were interpolated "
+                "between them",
+                count=len(found.lone),
+                frame=found.lone[0] + 1,
+            )
         )
         clip = note_repair(_mended(clip, found.lone) if mended else clip, Repair(LONE_FRAME, words, mended))
     if found.first or found.last:

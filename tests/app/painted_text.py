@@ -31,7 +31,9 @@ from PySide6.QtWidgets import (
     QHeaderView,
     QLabel,
     QLineEdit,
+    QPlainTextEdit,
     QTabBar,
+    QTextEdit,
     QToolTip,
     QWidget,
 )
@@ -284,6 +286,8 @@ def elided(one: Seen) -> bool:
         return words.rstrip(GAP) not in widget.text() or not widget.text().rstrip().endswith(GAP)
     if isinstance(widget, QComboBox):
         return words != widget.currentText()
+    if isinstance(edit := widget.parent(), QPlainTextEdit | QTextEdit):
+        return words not in edit.toPlainText()  # it names a button that ends with dots
     return words != GAP
 
 

@@ -11,7 +11,7 @@ import time
 from PySide6.QtCore import QSettings, QStandardPaths
 from PySide6.QtTest import QTest
 
-SIZE = (1280, 720)
+SIZE, SMALL = (1280, 720), (1280, 680)
 
 
 def main() -> None:
@@ -26,15 +26,19 @@ def main() -> None:
     drive.window.resize(*SIZE)
     drive.window.show()
     drive.window.make_late_panels()
+    for workspace, lines in walk(drive, *SMALL).items():  # with nothing in it
+        for line in lines:
+            print(f"{workspace}, empty: {line}")
     drive.files.open(SAMPLE, template=True)
     end = time.monotonic() + 60
     while not (drive.document.project.clips and drive.performance.skeleton() is not None):
         QTest.qWait(50)
         if time.monotonic() > end:
             sys.exit("the sample was not read")
-    for workspace, lines in walk(drive, *SIZE).items():
-        for line in lines:
-            print(f"{workspace}: {line}")
+    for size in (SIZE, SMALL):
+        for workspace, lines in walk(drive, *size).items():
+            for line in lines:
+                print(f"{workspace}, {size}: {line}")
     drive.document.undo_stack.setClean()
     drive.window.close()
     app.quit()

@@ -365,3 +365,32 @@ def test_the_language_follows_the_settings_then_the_system(
 
     translation.choose_language(Settings(), system)
     assert translation.get_language() == chosen
+
+
+def test_with_nothing_to_undo_no_colon_waits_for_words(english: None) -> None:
+    from types import SimpleNamespace
+
+    from app.features.files.file_commands import FileFeature
+
+    def said(done: str, undone: str) -> tuple[str, str]:
+        stack = SimpleNamespace(undoText=lambda: done, redoText=lambda: undone)
+        feature = SimpleNamespace(undo_stack=stack)
+        return FileFeature.undo_text(feature), FileFeature.redo_text(feature)
+
+    assert said("", "") == ("&Undo", "&Redo")
+    translation.choose("de")
+    assert said("", "") == ("&Rückgängig", "&Wiederholen")
+    assert said("Umbenennen", "Laden") == ("&Rückgängig: Umbenennen", "&Wiederholen: Laden")
+
+
+def test_what_reading_repaired_is_said_in_the_language(english: None) -> None:
+    import pickle
+
+    from metagraph.formats.takes import repair_note, take_repair
+
+    _, repair = take_repair("mixamo.com", "walk", "walk", ())
+    assert repair is not None and repair.words == "named after its file instead of 'mixamo.com'"
+    translation.choose("de")
+    assert tr_phrase(repair.words) == "nach der Datei benannt statt „mixamo.com“"
+    sent = pickle.loads(pickle.dumps(repair))  # files are read in processes of their own
+    assert tr_phrase(repair_note(sent)) == "nach der Datei benannt statt „mixamo.com“"

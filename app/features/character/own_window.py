@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QMenu, QVBoxLayout, QWidget
 from app.features.character.overlay_host import OverlayHost
 from app.stage.gl_view import make_beside
 from app.translation import make_lazy_texts, tr
+from app.widgets.within_screen import resize_within_screen
 from preview.scene import Scene
 
 Background = Literal["as shown", "transparent", "green"]
@@ -61,7 +62,7 @@ class OwnWindow(QWidget):
         panel.session.transport.moved.connect(self._follow)
         panel.session.look.changed.connect(self._follow)
         panel.session.watch.changed.connect(self._follow)
-        self.resize(720, 900)
+        resize_within_screen(self, 720, 900)
         self._restore()
 
     def _restore(self) -> None:

@@ -46,6 +46,7 @@ from app.stage.compatibility_state import Compatibility, compare_proposed_timing
 from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_phrase, tr_plural
 from app.widgets.quiet_fields import ComboBox
+from app.widgets.within_screen import resize_within_screen
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import KINDS, Action, Project
@@ -68,7 +69,7 @@ class MatrixDialog(QDialog):
         self.document, self.session, self.compatibility, self.jobs = document, session, compatibility, jobs
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Compatibility"))
-        self.resize(1000, 680)
+        resize_within_screen(self, 1000, 680)
         self.title = QLabel(self)
         self.title.setProperty("heading", True)
         self.search = QLineEdit(self, placeholderText=tr("Search clips"), clearButtonEnabled=True)

@@ -20,6 +20,7 @@ from app.features.conversation.segment_lanes import (
     place_segment_lanes,
 )
 from app.features.conversation.sound_reading import SideSound
+from app.look.shortening import shorten_middle
 from app.look.theme import SOUND_MARKS, WindowTheme
 from app.translation import tr
 from app.widgets.act_strip import STEPS, format_clock
@@ -104,9 +105,9 @@ def _titles(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, l
         bold.setPixelSize(SMALL)
     painter.setFont(bold)
     painter.setPen(QColor(t.text if over or side == scene.side else t.dim))
-    painter.drawText(
-        QRectF(12, lane.wave.top() + 2, LEFT - 30, 18), MIDDLE, elide_text(name, bold.toString(), LEFT - 32)
-    )
+    others = [get_side_name(scene.conversation, n) for n in range(len(scene.conversation.sides))]
+    shown = shorten_middle(name, LEFT - 32, lambda x: measure_text_width(x, bold.toString()), others)
+    painter.drawText(QRectF(12, lane.wave.top() + 2, LEFT - 30, 18), MIDDLE, shown)
     x, y = LEFT - 11.0, lane.wave.top() + 11.0  # what opens the menu of who it is
     painter.setPen(QPen(QColor(t.text if over else t.dim), 1.5))
     painter.drawPolyline([QPointF(x - 3.5, y - 2), QPointF(x, y + 2), QPointF(x + 3.5, y - 2)])
@@ -155,7 +156,8 @@ def _wave(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, lan
             lambda v: measure_pitch_y(v, area) - area.top(),
             1.7,
         )
-    _told(painter, t, heard, area)
+    listens = heard is None and any(other is not None for other in scene.heard)
+    _told(painter, t, heard, area, listens)
 
 
 def _curve(
@@ -181,10 +183,16 @@ def _curve(
     painter.drawImage(area.topLeft(), picture)
 
 
-def _told(painter: QPainter, t: WindowTheme, heard: SideSound | None, area: QRectF) -> None:
-    """Say why there is no sound, or how far it is."""
+def _told(
+    painter: QPainter, t: WindowTheme, heard: SideSound | None, area: QRectF, listens: bool = False
+) -> None:
+    """Say why there is no sound, or how far it is. listens: another speaker has one, as in a monologue."""
     inner = area.adjusted(14, 2, -14, -2)
-    if heard is None or heard.missing:
+    if listens:
+        painter.setPen(QColor(t.dim))
+        words = tr("Listens. To let this speaker talk too, choose a sound in the menu “…” above.")
+        painter.drawText(inner, MIDDLE | Qt.TextFlag.TextWordWrap, words)
+    elif heard is None or heard.missing:
         words = (
             heard.missing
             if heard is not None
@@ -353,8 +361,11 @@ def paint_empty_conversation(painter: QPainter, t: WindowTheme, area: QRectF, li
             x = rect.left() + 12 + n * 6
             painter.drawLine(QPointF(x, rect.center().y() - tall), QPointF(x, rect.center().y() + tall))
     painter.setPen(QColor(t.text))
-    for n, line in enumerate(lines):
-        painter.drawText(
-            QRectF(area.left(), top + 62 + n * 20, area.width(), 20), Qt.AlignmentFlag.AlignCenter, line
-        )
+    flags = Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
+    room = area.adjusted(16, 0, -16, 0)
+    room.setTop(top + 62)
+    for line in lines:
+        words = painter.boundingRect(room, flags, line)
+        painter.drawText(words, flags, line)
+        room.setTop(words.bottom() + 4)
         painter.setPen(QColor(t.dim))

@@ -14,6 +14,7 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.session import StageSession
 from app.translation import tr
+from app.widgets.within_screen import resize_within_screen
 from metagraph.graph.model import Project
 
 
@@ -29,7 +30,7 @@ class GenerationDialog(QDialog):
         self.document = document
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Generate motion"))
-        self.resize(1120, 680)
+        resize_within_screen(self, 1120, 680)
         self.use = UsePage(document, session, jobs, self)
         self.learn = LearnPage(document, session, jobs, begin_training, self)
         self.tabs = QTabWidget(self)

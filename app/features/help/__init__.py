@@ -116,8 +116,10 @@ def contribute(shell: Shell) -> Contribution:
             yield from (Entry(tr("In a conversation"), words, keys) for words, keys in LANES)
             return
         places = shell.services[PanelPlaces]
+        named = {c.plain for c in shell.actions.commands if shell.actions[c.id].isVisible()}
         for ident, dock in places.docks.items():
-            yield Entry(tr("Panels"), dock.windowTitle(), also="panel", run=partial(places.show, ident))
+            if dock.windowTitle() not in named:  # a command of that name shows the panel
+                yield Entry(tr("Panels"), dock.windowTitle(), also="panel", run=partial(places.show, ident))
         yield from list_named_parts(shell)
 
     recent: list[str] = []  # the commands done from the list, the latest first

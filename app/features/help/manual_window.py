@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 from app.features.help.manual_browser import ManualBrowser
 from app.features.help.manual_pages import DOCS, ManualEntry, list_manual_entries, search_pages
 from app.translation import tr
+from app.widgets.within_screen import resize_within_screen
 
 ROLE = Qt.ItemDataRole.UserRole
 Standard = QKeySequence.StandardKey
@@ -32,7 +33,7 @@ class ManualWindow(QDialog):
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self.setWindowTitle(tr("Manual"))
-        self.resize(1180, 780)
+        resize_within_screen(self, 1180, 780)
         self.tree = QTreeWidget(self)
         self.tree.setHeaderHidden(True)
         self.tree.setAccessibleName(tr("Contents"))

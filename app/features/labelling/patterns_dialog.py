@@ -46,6 +46,7 @@ from app.stage.session import StageSession
 from app.translation import make_lazy_texts, tr, tr_error, tr_noop, tr_phrase, tr_plural
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import get_vocabulary_word
+from app.widgets.within_screen import resize_within_screen
 from metagraph.common.studio import find_start_folder
 from metagraph.errors import FileError
 from metagraph.suggest.words.names import NameGuess, Patterns, PatternsError, merge_patterns, read_names
@@ -86,7 +87,7 @@ class PatternsDialog(QDialog):
         self.document, self.session, self.learned = document, session, learned
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Name patterns"))
-        self.resize(760, 720)
+        resize_within_screen(self, 760, 720)
         layout = QVBoxLayout(self)
         layout.setSpacing(10)
         layout.addWidget(

@@ -125,7 +125,7 @@ class ReviewFields(QWidget):
                 x += width + GAP
             below = top + CHIP + 4
             lines = small.boundingRect(
-                QRectF(0, 0, wide - TITLE - 2 * PAD, 500), int(Qt.TextFlag.TextWordWrap), row.reason
+                QRectF(0, 0, wide - TITLE - 2 * PAD, 5000), int(Qt.TextFlag.TextWordWrap), row.reason
             ).height() if row.reason else 0.0  # fmt: skip
             placed.reason = QRectF(
                 PAD + TITLE,

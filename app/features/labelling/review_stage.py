@@ -155,7 +155,10 @@ class ReviewStage(QWidget):
     def tell(self, words: str) -> None:
         """Write rich text over the picture."""
         self.words.setText(words)
+        before = self._share_above()
         self._place_words()
+        if self._share_above() > before + 0.02 and not self.view.moved_by_hand:
+            self._framed = None  # the words reach further down
 
     def _place_words(self) -> None:
         ideal = QTextDocument()
@@ -235,12 +238,16 @@ class ReviewStage(QWidget):
     def _frame(self, figure: MeshFigure, rotations: np.ndarray, positions: np.ndarray) -> None:
         aspect = self.view.width() / max(1, self.view.height())
         low, high = figure.posed_bounds(rotations, positions)
-        room = np.array(
-            [0.0, ABOVE * (high[1] - low[1]), 0.0]
-        )  # what is written over the picture hides no face
+        # What is written over the picture hides no face.
+        room = np.array([0.0, self._share_above() * (high[1] - low[1]), 0.0])
         self.view.camera = make_whole_figure_camera((low, high + room), aspect)
 
         self._stood, self._tall = positions[0, [0, 2]], float(high[1] - low[1])
+
+    def _share_above(self) -> float:
+        """Return how much of a figure's height has to stay free above it, for the words."""
+        covered = min(0.45, (self.words.height() + 12) / max(1, self.view.height()))
+        return max(ABOVE, covered / (1 - covered))
 
     def _follow(self, stands: np.ndarray) -> None:
         """Let a figure that walks off stay in the picture. stands `[2]`: x and z of its root."""

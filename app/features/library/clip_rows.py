@@ -15,7 +15,7 @@ from app.features.library.clip_filter import Filter
 from app.features.library.clip_groups import GROUPS, NONE
 from app.features.library.clip_layout import Section
 from app.features.library.clip_order import GIVEN, ORDERS
-from app.translation import tr
+from app.translation import tr, tr_phrase
 from app.widgets.mime import make_mime
 from metagraph.graph.generated import describe_origin
 from metagraph.graph.model import ClipEntry, Project
@@ -152,7 +152,8 @@ class ClipRows(QAbstractListModel):
 
     def _tip(self, entry: ClipEntry) -> str:
         motion = entry.motion
-        notes = "".join(f"\n{n}" for n in (motion.notes if motion else (tr("The file is missing."),)))
+        told = motion.notes if motion else (tr("The file is missing."),)
+        notes = "".join(f"\n{tr_phrase(n)}" for n in told)
         uses = ", ".join(f"{tr(a.kind)} ({tr(a.layer)})" for a in self.facts.uses(entry))
         drawn = entry.id in self.document.project.drawn
         uses = uses or (tr("used as a state") if drawn else tr("not placed yet"))

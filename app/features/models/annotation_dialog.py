@@ -44,6 +44,7 @@ from app.widgets.act_strip import ActStrip, format_clock
 from app.widgets.form_fields import Seconds
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
+from app.widgets.within_screen import resize_within_screen
 from metagraph.common.studio import find_start_folder
 from metagraph.formats.elan import read_elan
 from metagraph.graph.model import LAYERS, Layer
@@ -166,7 +167,7 @@ class AnnotateDialog(QDialog):
         )  # those that are read first
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Import annotation"))
-        self.resize(1040, 780)
+        resize_within_screen(self, 1040, 780)
         self._build(annotation)
         self._show_tiers()
         self._changed(first=True)

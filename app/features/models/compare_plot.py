@@ -93,7 +93,7 @@ class ComparePlot(QWidget):
         plot = make_still_plot(self)
         plot.getAxis("left").setWidth(34)
         plot.plotItem.vb.sigResized.connect(self._name_bars)
-        plot.setMinimumHeight(96)
+        plot.setMinimumHeight(76)
         plot.plotItem.layout.setContentsMargins(0, TOP, 0, 0)
         plot.setYRange(0, 1.08, padding=0.05)  # the uppermost number is whole, too
         plot.scene().sigMouseMoved.connect(lambda at, p=plot: self._hover(p, at))

@@ -33,8 +33,10 @@ from app.project.jobs import Jobs
 from app.stage.session import StageSession
 from app.translation import tr, tr_noop, tr_plural
 from app.widgets.act_strip import ActStrip
+from app.widgets.flow import FlowLayout
 from app.widgets.form_fields import QuietChooser, Seconds
 from app.widgets.making import make_widget
+from app.widgets.sentence import OneLine
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, Kind, Layer, Limb, Markov, Project
 from metagraph.playback.learning.compare import ModelComparison, compare_model, generate
@@ -118,12 +120,11 @@ class ModelsPanel(QWidget):
     def _top(self) -> QHBoxLayout:
         top = QHBoxLayout()
         top.setSpacing(10)
-        self.title, self.origin = QLabel(self), QLabel(self)
+        self.title, self.origin = QLabel(self), OneLine(self)
         self.title.setProperty("title", True)
         self.origin.setProperty("dim", True)
         top.addWidget(self.title)
-        top.addWidget(self.origin)
-        top.addStretch(1)
+        top.addWidget(self.origin, 1)
         self.back = make_widget(
             QPushButton,
             tr("Reset to default"),
@@ -164,15 +165,13 @@ class ModelsPanel(QWidget):
     def _right(self) -> QVBoxLayout:
         right = QVBoxLayout()
         right.setSpacing(6)
-        fields = QHBoxLayout()
-        fields.setSpacing(8)
+        fields = FlowLayout(spacing=8)
         self.gap = Seconds(self, tr("Average pause between actions"), most=600)
         self.gap.valueChanged.connect(self._set_gap)
         self.shares: dict[str, Seconds] = {}
         self.share_words = QLabel(tr("positive and negative are separate states"), self)
         self.share_words.setProperty("dim", True)
-        fields.addWidget(QLabel(tr("Rest"), self))
-        fields.addWidget(self.gap)
+        fields.addWidget(self._pair(QLabel(tr("Rest"), self), self.gap))
         self.share_labels = []
         for tag in ("positive", "negative"):
             field = Seconds(
@@ -187,15 +186,12 @@ class ModelsPanel(QWidget):
             self.shares[tag] = field
             label = QLabel(tr(tag.capitalize()), self)
             self.share_labels.append(label)
-            fields.addWidget(label)
-            fields.addWidget(field)
+            fields.addWidget(self._pair(label, field))
         fields.addWidget(self.share_words)
-        fields.addStretch(1)
         self.against = QLabel(tr("Compared with"), self)
-        fields.addWidget(self.against)
         self.chooser = QuietChooser(self, tr("The annotation that the model's output is compared with"))
         self.chooser.activated.connect(self._choose)
-        fields.addWidget(self.chooser)
+        fields.addWidget(self._pair(self.against, self.chooser))
         right.addLayout(fields)
         self.teach = QLabel(self, wordWrap=True)
         self.teach.setTextFormat(Qt.TextFormat.RichText)
@@ -205,6 +201,16 @@ class ModelsPanel(QWidget):
         right.addWidget(self.teach)
         right.addWidget(self.plot, 1)
         return right
+
+    def _pair(self, label: QLabel, field: QWidget) -> QWidget:
+        """Return a label and its field, which stay together where the line is too short."""
+        out = QWidget(self)
+        row = QHBoxLayout(out)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(8)
+        row.addWidget(label)
+        row.addWidget(field)
+        return out
 
     def sizeHint(self) -> QSize:
         return QSize(1100, TALL)
@@ -243,7 +249,7 @@ class ModelsPanel(QWidget):
         self.title.setText(tr("{layer}: which action follows which", layer=tr(layer.capitalize())))
         default = tr("default, from the paper") if layer == "arms" else tr("default")
         of = tr("learned or edited") if own else default
-        self.origin.setText(f"{of} · {tr_plural('{count:,} state', '{count:,} states', len(shown.states))}")
+        self.origin.say(f"{of} · {tr_plural('{count:,} state', '{count:,} states', len(shown.states))}")
         self.back.setEnabled(own)
         kinds = {kind for _, kind in project.graphs[layer].index}
         closed = (

@@ -42,6 +42,7 @@ from app.stage.session import StageSession
 from app.translation import group_thousands, tr, tr_error, tr_noop, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import DoubleSpinBox, SpinBox
+from app.widgets.within_screen import resize_within_screen
 from metagraph.common.compiling import is_numba_installed
 from metagraph.graph import edits
 from metagraph.graph.conversation.edits import change_side
@@ -89,7 +90,7 @@ class MotionGraphDialog(QDialog):
         self.document, self.session, self.jobs = document, session, jobs
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Motion graph"))
-        self.resize(1080, 720)
+        resize_within_screen(self, 1080, 720)
         self.states: Any = None  # synthesis.states.States of the chosen takes
         self.limit: Any = None  # synthesis.graph.Threshold
         self.graph: Any = None  # synthesis.graph.MotionGraph, None until it is built for what is chosen now

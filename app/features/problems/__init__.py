@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, Qt
 from PySide6.QtWidgets import QToolButton, QWidget
 
 from app.look import icons
@@ -56,10 +56,18 @@ class ProblemButton(QToolButton):
         self.watch, self.session = watch, shell.stage.session
         self.setToolTip(tr("Problems in the project"))
         self.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self.setProperty("gives_way", True)  # where the header has no room for its words
         self.clicked.connect(lambda: shell.show("problems"))
         watch.changed.connect(self.refresh)
         self.session.look.changed.connect(self.refresh)
         self.refresh()
+
+    def event(self, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.ToolTip:
+            words = tr("Problems in the project")
+            unsaid = self.toolButtonStyle() == Qt.ToolButtonStyle.ToolButtonIconOnly
+            self.setToolTip(f"{self.text()}\n{words}" if unsaid else words)
+        return super().event(event)
 
     def refresh(self) -> None:
         """Show how many there are now."""

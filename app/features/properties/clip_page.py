@@ -13,7 +13,7 @@ from app.features.properties.page_form import Edit, add_form, make_page_box
 from app.look.theme import KIND_MARKS, get_theme
 from app.project.document import Document
 from app.stage.session import StageSession
-from app.translation import tr, tr_error, tr_plural
+from app.translation import tr, tr_error, tr_phrase, tr_plural
 from app.widgets.restyling import set_sheet
 from app.widgets.vocabulary import get_vocabulary_word
 from metagraph.playback.action_table import Column, list_clip_rows, write_cells
@@ -50,7 +50,7 @@ class ClipPage(QWidget):
             e = entries[0]
             self.title.setText(e.name)
             notes = "".join(
-                f"\n\n{note}"
+                f"\n\n{tr_phrase(note)}"
                 for note in (e.motion.notes if e.motion is not None else (tr("The file is missing."),))
             )
             self.words.setText(

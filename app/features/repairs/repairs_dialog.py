@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
-from app.translation import make_lazy_texts, tr, tr_error, tr_plural
+from app.translation import make_lazy_texts, tr, tr_error, tr_phrase, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.tree_items import list_items_below, list_top_items
 from metagraph.formats.repairs import Repaired, Reread, list_repairs, reread
@@ -84,8 +84,10 @@ class RepairsDialog(QDialog):
         self.go.clicked.connect(self.apply)
         strengthen(self.go)
         self.buttons.rejected.connect(self.reject)
-        for part in (self.headline, self.words, self.tree, self.lines, self.trouble, self.buttons):
+        for part in (self.headline, self.words, self.tree, self.lines, self.trouble):
             layout.addWidget(part, 1 if part is self.tree else 0)
+        layout.addStretch(0)  # where there is no tree, the words stay at the top
+        layout.addWidget(self.buttons)
         document.changed.connect(self._fill)
         document.loaded.connect(self.reject)
         self._fill()
@@ -111,9 +113,10 @@ class RepairsDialog(QDialog):
                 entry, repair = project.clips[found[n].clip], found[n].repair
                 # A skipped take is none of the clips; its words name it, its file is what it has.
                 whose = entry.name if repair.take is None else PurePath(entry.path).name
-                item = QTreeWidgetItem(top, [whose, repair.words])
+                item = QTreeWidgetItem(top, [whose, tr_phrase(repair.words)])
                 item.setData(0, PLACE, n)
                 item.setToolTip(0, entry.path)
+                item.setToolTip(1, item.text(1))
                 item.setCheckState(0, TICKED if found[n].repair.made else OPEN)
             top.setExpanded(len(mine) <= 12)
         self.tree.blockSignals(False)

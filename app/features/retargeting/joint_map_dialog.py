@@ -31,6 +31,7 @@ from app.translation import tr, tr_error, tr_noop, tr_phrase, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.stick_figures import StickFigures
+from app.widgets.within_screen import resize_within_screen
 from metagraph.formats.imports import Strangers
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.motion.clip import Clip
@@ -79,7 +80,7 @@ class JointMapDialog(QDialog):
         }
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Retarget clips"))
-        self.resize(1200, 720)
+        resize_within_screen(self, 1200, 720)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(16, 14, 16, 14)
         layout.setSpacing(8)

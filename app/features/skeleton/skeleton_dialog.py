@@ -25,6 +25,7 @@ from app.translation import tr
 from app.widgets.joint_mask import JOINT, fill_joint_tree
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import get_vocabulary_word
+from app.widgets.within_screen import resize_within_screen
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import PARTS, Part, Project
 from metagraph.motion.roles import ROLES, find_missing_roles
@@ -40,7 +41,7 @@ class SkeletonDialog(QDialog):
         self.document, self.session = document, session
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Skeleton"))
-        self.resize(720, 680)
+        resize_within_screen(self, 720, 680)
         layout = QVBoxLayout(self)
         self.words = QLabel(self, wordWrap=True)
         layout.addWidget(self.words)

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from functools import partial
 
 from PySide6.QtCore import QPoint, QSettings, Qt
-from PySide6.QtGui import QGuiApplication
+from PySide6.QtGui import QGuiApplication, QResizeEvent
 from PySide6.QtWidgets import (
+    QBoxLayout,
     QHBoxLayout,
     QInputDialog,
     QLabel,
@@ -47,6 +48,8 @@ TITLES_OF: Mapping[Which, str] = make_lazy_texts(
 REASONS = 3  # reasons of refusals that are listed
 HIDDEN_FIRST = "clip"  # mostly the same as the name
 _HIDDEN_KEY = "table/hidden"
+
+SOUGHT = 170  # pixels of the search field, at least
 
 
 class TablePanel(QWidget):
@@ -89,7 +92,19 @@ class TablePanel(QWidget):
         self._count()
         self._follow()
 
-    def _make_bar(self) -> QHBoxLayout:
+    def _changing(self) -> tuple[QWidget, ...]:
+        return self.fill, self.replace_button, self.count
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Put what changes cells under what finds them, where a line has no room for both."""
+        super().resizeEvent(event)
+        parts = (self.which, self.kept, *self._changing())
+        needed = SOUGHT + sum(part.sizeHint().width() + 8 for part in parts) + 24
+        directions = QBoxLayout.Direction
+        wide = needed <= event.size().width()
+        self._bar.setDirection(directions.LeftToRight if wide else directions.TopToBottom)
+
+    def _make_bar(self) -> QBoxLayout:
         self.search = QLineEdit(self, clearButtonEnabled=True)
         self.search.setPlaceholderText(tr("Search names and labels"))
         self.search.setToolTip(tr("Words of any cell: sit gesture, sit -loop, sit | bow"))
@@ -115,11 +130,15 @@ class TablePanel(QWidget):
         self.replace_button.toggled.connect(self._show_replacing)
         self.count = QLabel(self)
         self.count.setProperty("dim", True)
-        bar = QHBoxLayout()
+        self.search.setMinimumWidth(SOUGHT)
+        self._bar = bar = QBoxLayout(QBoxLayout.Direction.LeftToRight)
         bar.setSpacing(8)
-        bar.addWidget(self.search, 1)
-        for widget in (self.which, self.kept, self.fill, self.replace_button, self.count):
-            bar.addWidget(widget)
+        finding, changing = QHBoxLayout(), QHBoxLayout()
+        for row, widgets in ((finding, (self.search, self.which, self.kept)), (changing, self._changing())):
+            row.setSpacing(8)
+            for widget in widgets:
+                row.addWidget(widget, 1 if widget is self.search else 0)
+            bar.addLayout(row, 1 if row is finding else 0)
         for button in (self.kept, self.fill, self.replace_button):
             button.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the cells keep the keyboard
         return bar
@@ -266,6 +285,11 @@ class TablePanel(QWidget):
 
     def _count(self) -> None:
         shown = len(self.rows.rows)
+        self.view.show_empty_words(
+            tr("No row matches. Clear the search, or choose All.")
+            if self.rows.filter != TableFilter()
+            else tr("Import clips to edit their labels and timing here.")
+        )
         self.count.setText(tr_plural("{count:,} row", "{count:,} rows", shown))
         if self.replacing.isVisible():
             sought, column = self.replacing.sought.text().casefold(), self.replacing.chosen_column()

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import Any
 
-from PySide6.QtCore import QPointF
+from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter
 
 from app.features.timeline.lane_titles import LOCK, paint_padlock
+from app.features.timeline.stage_words import explain_silence
 from app.features.timeline.voice_lane import paint_voice
 from app.features.timeline.what_if import get_ghost_seed, paint_ghost
 from app.look.theme import get_theme
-from app.widgets.lane_geometry import LEFT, NAMES, RequestMark, place_lanes, split_lane
+from app.widgets.lane_geometry import LEFT, NAMES, RULER, RequestMark, place_lanes, split_lane
 from app.widgets.lane_paint import LaneScene, paint_lane_scene
 from app.widgets.request_menu import STAGE
 
@@ -36,6 +37,11 @@ def paint_lanes(
         locked,
     )
     paint_lane_scene(painter, t, scene)
+    words = explain_silence(view.performance.shown, view.session)
+    if words:
+        room = QRectF(LEFT + 20, RULER, view.width() - LEFT - 40, view.height() - RULER)
+        painter.setPen(QColor(t.dim))
+        painter.drawText(room, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, words)
     for name, lane in place_lanes(view.height(), view.sizes).items():
         if name == "words":
             paint_voice(painter, t, lane, view.scale(), view.width(), view.voices, ratio)
@@ -47,5 +53,5 @@ def paint_lanes(
             painter.fillRect(row.adjusted(LEFT, 0, 0, -3), QColor(t.panel))
             paint_voice(painter, t, row, view.scale(), view.width(), view.voices, ratio)
         if name in NAMES:
-            at = QPointF(LEFT - LOCK / 2 - 2, lane.center().y())
+            at = QPointF(LEFT - LOCK / 2, lane.center().y())
             paint_padlock(painter, t, at, name in locked)

@@ -15,6 +15,13 @@ def count_cues(shown: ShownPlayback) -> int:
     return sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
 
 
+def explain_silence(shown: ShownPlayback, session: StageSession) -> str:
+    """Return what is said on the empty lanes of the graph, and "" where something plays."""
+    if session.onstage.mode == "manual" or shown.clip is not None or shown.others or count_cues(shown):
+        return ""
+    return tr("Nothing plays yet. Drop a clip on a stance and others on the nodes around it.")
+
+
 def describe_marks(marks: list[RequestMark]) -> str:
     """Return what is said of selected requests."""
     if len(marks) == 1:

@@ -136,6 +136,7 @@ class TimelinePanel(QWidget):
         self.now.clicked.connect(self.performance.live.follow)
         row.addWidget(self.now)
         self.live = make_widget(QToolButton, self, text=tr("Live"), checkable=True)
+        self.live.setProperty("tight", True)
         self.live.setToolTip(
             tr("Let other programs on this computer control the character over WebSocket and OSC (Ctrl+L)")
         )
@@ -144,6 +145,7 @@ class TimelinePanel(QWidget):
         self.ask = make_widget(
             QToolButton, self, text=tr("Ask for…"), toolTip=tr("Request an action, a look or a line now")
         )
+        self.ask.setProperty("tight", True)
         self.ask.clicked.connect(self._ask)
         row.addWidget(self.ask)
 
@@ -464,7 +466,7 @@ class TimelinePanel(QWidget):
                 actions=tr_plural("{count:,} action", "{count:,} actions", count),
                 length=shown.length,
             )
-            empty = tr("Nothing plays yet. Drop a clip on a stance and others on the nodes around it.")
+            empty = tr("Nothing plays yet")  # the lanes say what is missing
             self.title.say(
                 (words if count else empty)
                 + (

@@ -54,7 +54,7 @@ class TimingPanel(QWidget):
         )
         self.use.clicked.connect(self._use)
         self.joint = QuietChooser(self, toolTip=tr("Which joint's speed the graph shows"))
-        self.joint.setMinimumContentsLength(12)
+        self.joint.setMinimumContentsLength(8)
         self.joint.activated.connect(lambda n: subject.show(joint=self.joint.itemData(n)))
         tip = tr(
             "Playback speed of the clip; 1 is the speed in the file. Every action that uses the "
@@ -77,6 +77,9 @@ class TimingPanel(QWidget):
             True,
         )
         self.compare.clicked.connect(subject.compare)
+        self.compare.setText(tr("A: before"))  # nothing moves when it says so
+        self.compare.setMinimumWidth(self.compare.sizeHint().width())
+        self.compare.setText(tr("A/B"))
         self.loop = self._button(tr("Loop"), tr("Play only this action, in a loop"), True)
         self.loop.clicked.connect(subject.loop_action)
         self.more = MoreButton(session.look, tr("Display options"), tr("Display options"), self)
@@ -119,6 +122,7 @@ class TimingPanel(QWidget):
     def _button(self, text: str, tip: str, checkable: bool = False) -> QToolButton:
         out = make_widget(QToolButton, self, text=text, toolTip=tip, checkable=checkable)
         out.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
+        out.setProperty("tight", True)  # the verdict beside needs the room
         out.setAccessibleName(f"{text}: {tip}" if text else tip)
         return out
 

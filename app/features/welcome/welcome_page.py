@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QRectF, QSize, Qt, QTimer
-from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen, QPixmap
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPaintEvent, QPen, QPixmap, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractButton,
+    QBoxLayout,
     QGridLayout,
     QHBoxLayout,
     QLabel,
@@ -46,11 +47,12 @@ class WelcomeChoice:
 
 
 class WelcomeCard(QAbstractButton):
-    """A picture over or beside a title and what it is for."""
+    """A picture over a title and what it is for. beside: cards of the page; titles keep to a line."""
 
     def __init__(self, choice: WelcomeChoice, session: StageSession, parent: QWidget) -> None:
         super().__init__(parent)
         self.choice, self.session = choice, session
+        self.beside: Sequence[WelcomeCard] = (self,)
         self._drawn: Once[QPixmap] = Once()
         self.setText(choice.title)
         self.setAccessibleName(choice.title)
@@ -72,23 +74,36 @@ class WelcomeCard(QAbstractButton):
     def sizeHint(self) -> QSize:
         return QSize(290, 170)
 
+    def measure_words(self) -> tuple[float, float]:
+        """Return the heights of the title and of what it is for."""
+        words, flags = QRectF(self.rect()).adjusted(14, 0, -14, 0), Qt.TextFlag.TextWordWrap
+        measure = QFontMetricsF(self._bold()).boundingRect, QFontMetricsF(self.font()).boundingRect
+        title, what = (
+            m(words, flags, x) for m, x in zip(measure, (self.text(), self.toolTip()), strict=True)
+        )
+        return title.height(), what.height()
+
+    def _bold(self) -> QFont:
+        out = QFont(self.font())
+        out.setWeight(QFont.Weight.DemiBold)
+        return out
+
     def paintEvent(self, event: QPaintEvent) -> None:
         t, painter = get_theme(self.session.look.name), QPainter(self)
-        words = QRectF(self.rect()).adjusted(14, 0, -14, -12)
-        bold, flags = QFont(self.font()), Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
-        bold.setWeight(QFont.Weight.DemiBold)
-        what = painter.boundingRect(words, flags, self.toolTip())
-        painter.setFont(bold)
-        title = painter.boundingRect(words, flags, self.text())
-        top = self.height() - 12 - what.height() - title.height() - 3
+        words = QRectF(self.rect()).adjusted(14, 0, -14, 0)
+        flags = Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
+        title = self.measure_words()[0]
+        tallest = max(sum(card.measure_words()) for card in self.beside)
+        top = self.height() - 12 - tallest - 3
         painter.drawPixmap(0, 0, self._picture_above(top))
         if top < LEAST_PICTURE:
-            top = (self.height() - what.height() - title.height() - 3) / 2
+            top = (self.height() - tallest - 3) / 2
         painter.setPen(QColor(t.text if self.isEnabled() else t.dim))
+        painter.setFont(self._bold())
         painter.drawText(words.adjusted(0, top, 0, 0), flags, self.text())
         painter.setFont(self.font())
         painter.setPen(QColor(t.dim))
-        painter.drawText(words.adjusted(0, top + title.height() + 3, 0, 12), flags, self.toolTip())
+        painter.drawText(words.adjusted(0, top + title + 3, 0, 0), flags, self.toolTip())
         painter.end()
 
     def _picture_above(self, top: float) -> QPixmap:
@@ -148,6 +163,8 @@ class WelcomePage(QWidget):
             WelcomeChoice("recent", tr("Recent"), "", self._choose_recent), session, self
         )
         self.cards = [*(WelcomeCard(c, session, self) for c in choices), self.recent]
+        for card in self.cards:
+            card.beside = self.cards
         self.skip = make_widget(
             QToolButton, self, text=tr("Start with an empty graph"), toolTip=tr("Close this page")
         )
@@ -174,12 +191,12 @@ class WelcomePage(QWidget):
         middle.addStretch(1)
         layout.addLayout(middle, 8)
         layout.addSpacing(4)
-        below = QHBoxLayout()
-        below.addStretch(1)
-        below.addWidget(self.guide)
-        below.addWidget(self.skip)
-        below.addStretch(1)
-        layout.addLayout(below)
+        self._below = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        self._below.addStretch(1)
+        for button in (self.guide, self.skip):
+            self._below.addWidget(button, 0, Qt.AlignmentFlag.AlignHCenter)
+        self._below.addStretch(1)
+        layout.addLayout(self._below)
         layout.addStretch(1)
         document.loaded.connect(self._again)
         document.changed.connect(lambda *_: self.follow())
@@ -187,6 +204,15 @@ class WelcomePage(QWidget):
         session.look.changed.connect(self.update)
         session.onstage.mode_changed.connect(self.follow)
         self._again()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Put the buttons under each other where a line has no room for both."""
+        super().resizeEvent(event)
+        needed = self.guide.sizeHint().width() + self.skip.sizeHint().width() + 46
+        directions = QBoxLayout.Direction
+        self._below.setDirection(
+            directions.LeftToRight if needed <= event.size().width() else directions.TopToBottom
+        )
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() in (QEvent.Type.Resize, QEvent.Type.Show):

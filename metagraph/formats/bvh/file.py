@@ -262,7 +262,11 @@ def _motion(
         ) from None
     digits, repairs = head[2].decode("ascii", "replace"), []
     if _SLOWEST <= step <= 1000 * _SLOWEST:
-        words = f"its frame time of {step:g} is milliseconds: {1000 / step:.4g} frames a second"
+        words = phrase(
+            "its frame time of {time:g} is milliseconds: {rate:.4g} frames a second",
+            time=step,
+            rate=1000 / step,
+        )
         milliseconds = FRAME_TIME not in as_is or step > FRAME_SECONDS[1]
         repairs.append(Repair(FRAME_TIME, words, milliseconds))
         if milliseconds:
@@ -444,7 +448,7 @@ def _clip(
     up, rest_too = is_z_up(skeleton, roles, rotations, placed, offsets)
     rest_rotations = rotation.make_identity_rotations((len(joints),))
     if up:
-        repairs.append(Repair(UP, "its Z axis points up: turned to Y up", UP not in as_is))
+        repairs.append(Repair(UP, phrase("its Z axis points up: turned to Y up"), UP not in as_is))
     if up and UP not in as_is:
         roots = np.flatnonzero(parents < 0)
         _turn_up(roots, rotations, offsets, placed)
@@ -455,9 +459,15 @@ def _clip(
     )
     if relative:
         words = (
-            "the root's positions are relative to its OFFSET, which was added: the feet are then on the floor"
+            phrase(
+                "the root's positions are relative to its OFFSET, which was added: the feet are then on the "
+                "floor"
+            )
             if relative == [0]
-            else f"the positions of {len(relative)} joints are relative to their OFFSET, which was added"
+            else phrase(
+                "the positions of {count} joints are relative to their OFFSET, which was added",
+                count=len(relative),
+            )
         )
         repairs.append(Repair(FROM_OFFSET, words, FROM_OFFSET not in as_is))
         if FROM_OFFSET not in as_is:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import phrase
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose, Skeleton
 
@@ -20,12 +21,12 @@ _BURIED = 0.25  # of the figure's height: a foot that is deeper on average is un
 _ON_FLOOR = 0.12  # of it: a foot that is nearer to the floor on average stands there
 _COLLAPSED = 0.3  # of their length: bones that are shorter on average have lost it
 _UNITS = (
-    (1.0, "metres"),
-    (0.01, "centimetres"),
-    (0.0254, "inches"),
-    (0.001, "millimetres"),
-    (0.0254 / 0.45, "the CMU database's units (5.64 cm)"),
-    (0.1, "decimetres"),
+    (1.0, phrase("metres")),
+    (0.01, phrase("centimetres")),
+    (0.0254, phrase("inches")),
+    (0.001, phrase("millimetres")),
+    (0.0254 / 0.45, phrase("the CMU database's units (5.64 cm)")),
+    (0.1, phrase("decimetres")),
 )
 
 
@@ -108,13 +109,21 @@ def find_unit(skeleton: Skeleton, roles: dict[str, int]) -> tuple[float, str]:
         if _HUMAN[0] <= tall * scale <= _HUMAN[1]:
             return (
                 scale,
-                f"units read as {name}: the {'figure' if known else 'skeleton'} is then {tall * scale:.2f} "
-                "m tall",
+                phrase(
+                    "units read as {unit}: the figure is then {height:.2f} m tall"
+                    if known
+                    else "units read as {unit}: the skeleton is then {height:.2f} m tall",
+                    unit=name,
+                    height=tall * scale,
+                ),
             )
     return (
         USUAL,
-        f"units read as centimetres, though the skeleton is then {tall * 0.01:.3g} m tall; give the scale "
-        "to change it",
+        phrase(
+            "units read as centimetres, though the skeleton is then {height:.3g} m tall; give the scale to "
+            "change it",
+            height=tall * 0.01,
+        ),
     )
 
 

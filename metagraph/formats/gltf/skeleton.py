@@ -246,8 +246,12 @@ def _unit(rest: Array, as_is: Collection[str]) -> tuple[float, tuple[Repair, ...
     unit = 0.01 if height > _TALL else 100.0 if 1e-3 < height < _TINY and len(rest) > 3 else 1.0
     if unit == 1.0:
         return unit, ()
-    larger = "100 times smaller (centimetres)" if unit < 1 else "100 times larger"
-    repair = Repair(UNIT, f"its skeleton is {height:.3g} m long: read {larger}", UNIT not in as_is)
+    words = (
+        phrase("its skeleton is {height:.3g} m long: read 100 times smaller (centimetres)", height=height)
+        if unit < 1
+        else phrase("its skeleton is {height:.3g} m long: read 100 times larger", height=height)
+    )
+    repair = Repair(UNIT, words, UNIT not in as_is)
     return (unit if repair.made else 1.0), (repair,)
 
 

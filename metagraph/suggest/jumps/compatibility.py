@@ -349,7 +349,9 @@ def propose_times(
     away = bool((left > 1).any())
     last = max(out.leave[-1][0] if out.leave else end, middle, _settled(clip, roles))
     earliest = last if away and leave and last < end - blend_out else None
-    if enter and leave:
+    if not (np.isfinite(into.enter_cost) and np.isfinite(out.leave_cost)):
+        reason = phrase("its stance has no resting clip yet, so its entry and exit cannot be judged")
+    elif enter and leave:
         reason = phrase(
             "moves from {first:.2f} to {last:.2f} s, and looks like its stance before and after",
             first=moving[0],

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from PySide6.QtCore import QSize, Qt
+from PySide6.QtCore import QEvent, QSize, Qt
+from PySide6.QtGui import QHelpEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -20,6 +21,7 @@ from PySide6.QtWidgets import (
     QSlider,
     QSpinBox,
     QToolButton,
+    QToolTip,
 )
 
 from app.features.problems import ProblemButton
@@ -797,6 +799,28 @@ def test_a_dialog_opens_over_the_window_and_closes(toys, command):
     for dialog in drive.window.findChildren(QDialog):
         dialog.close()
     drive.pause(30)
+
+
+@pytest.mark.parametrize("width", [1280, 1092, 870])
+def test_a_narrow_windows_header_still_has_all_its_parts(toys, width):
+    """At 1092 pixels, a laptop's screen at 125 %, Export was gone."""
+    header = toys.window.header
+    more = next(b for b in header.findChildren(QToolButton) if b.objectName() == "qt_toolbar_ext_button")
+    problems = header.findChild(ProblemButton)
+    wide = header.name.text(), problems.toolButtonStyle()
+    toys.window.resize(width, 680)
+    toys.pause(50)
+    assert toys.window.width() == width and not more.isVisible()
+    parts = (header.widgetForAction(a) for a in header.actions() if a.isVisible())
+    assert all(part.isVisible() for part in parts)
+    at = problems.rect().center()
+    QApplication.sendEvent(problems, QHelpEvent(QEvent.Type.ToolTip, at, problems.mapToGlobal(at)))
+    unsaid = problems.toolButtonStyle() == Qt.ToolButtonStyle.ToolButtonIconOnly
+    assert (problems.text() in problems.toolTip()) == unsaid
+    QToolTip.hideText()
+    toys.window.resize(1680, 1020)
+    toys.pause(50)
+    assert (header.name.text(), problems.toolButtonStyle()) == wide and header.name.isVisible()
 
 
 def test_where_the_header_is_narrow_a_dot_says_unsaved_and_no_part_is_pressed_together(drive, sample):

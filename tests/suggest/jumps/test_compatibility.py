@@ -145,6 +145,7 @@ def test_another_skeleton_or_no_frames_cannot_be_entered(toy: Any) -> None:
         clip,
         np.full(len(measure_transition_costs(stats, clip, find_stance_frames(stats, []))), np.inf),
     )
+    assert found.reason.startswith("its stance has no resting clip yet") and "inf" not in found.reason
     assert (
         not found.good
         and 0 <= found.start <= found.end <= clip.duration

@@ -8,9 +8,11 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
+from app.features.conversation.segment_view import SegmentView
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.requests import Performance
+from tests.app.painted_text import painted, texts
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
@@ -143,3 +145,29 @@ def test_the_first_conversation_plays_by_a_click_on_the_empty_stage_and_nothing_
     assert onstage.conversation == next(iter(drive.document.project.conversations))
     assert drive.session.transport.playing and not panel.play.isVisible()
     assert not panel.editing.chosen, "Delete would remove it"
+
+
+@pytest.mark.parametrize("width", [360, 700])
+def test_what_an_empty_panel_says_is_never_cut(drive: Any, width: int) -> None:
+    view = drive.conversation.findChild(SegmentView)
+    view.resize(width, 400)
+    words = painted(view)
+    assert "TextGrid" in " ".join(w.text for w in words)
+    assert all(w.rect.left() >= 0 and w.rect.right() <= width and w.rect.bottom() <= 400 for w in words)
+
+
+def test_who_has_no_sound_beside_one_who_has_listens_and_names_stay_apart(talk: Any) -> None:
+    """A monologue is no mistake."""
+    ident = talk.drive.session.onstage.conversation
+    for side, name in enumerate(("First speaker of all", "First speaker of them")):
+        sound: dict[str, Any] = {"audio": None} if side else {}
+        talk.drive.document.edit(
+            "Change",
+            lambda p, s=side, n=name, more=sound: conversation_edits.change_side(p, ident, s, name=n, **more),
+        )
+    talk.read()
+    said = [text.text for text in texts(talk.view)]
+    assert any(words.startswith("Listens.") for words in said)
+    assert not any("⚠" in words for words in said)
+    names = [words for words in said if "…" in words and words.startswith(("First", "…", "F"))][:2]
+    assert len(set(names)) == 2

@@ -103,3 +103,10 @@ def test_stances_and_actions_are_gone_to_by_their_names(toys):
     finder.search.setText("far")
     QTest.keyClick(finder.search, Qt.Key.Key_Return)
     toys.wait(lambda: toys.session.place.stance() == toys.id("far"))
+
+
+def test_a_panel_that_a_command_shows_is_listed_once(toys):
+    dialog = opened(toys, "palette")
+    every = [e.words for e in dialog.listed()]
+    assert every.count("History") == every.count("Table") == 1 and "Problems" in every
+    dialog.close()

@@ -570,6 +570,20 @@ def test_why_stances_cannot_be_joined_is_said_and_not_counted_as_a_transition(pr
     dialog.close()
 
 
+@pytest.mark.parametrize("lines", [1, 6])
+def test_what_is_written_over_the_character_leaves_its_face_free(drive, lines):
+    from app.features.labelling.review_stage import ReviewStage
+
+    stage = ReviewStage(drive.session, drive.shell.stage.figures, drive.window)
+    stage.resize(500, 480)
+    stage.layout().activate()
+    stage.tell("<br>".join(["words"] * lines))
+    above = stage._share_above()
+    top = above / (1 + above) * stage.view.height()  # where a figure begins that fills the rest
+    assert top >= stage.words.height() + 12 - 1
+    stage.deleteLater()
+
+
 def test_a_long_reason_is_shown_whole(drive, qtbot):
     from app.features.labelling.review_fields import ReviewFields, ReviewRow
 

@@ -257,3 +257,10 @@ def test_a_model_that_never_makes_what_was_seen_is_found_out(reading, qtbot):
     qtbot.addWidget(plot)
     plot.show_comparison(found)
     assert not plot.grab().isNull()
+
+
+def test_it_fits_a_small_screens_panel_and_its_buttons_are_whole(panel):
+    """In Talk at 1280 pixels it is about 700 wide."""
+    assert panel.minimumSizeHint().width() <= 700
+    for button in (panel.back, panel.learn):
+        assert button.width() >= button.sizeHint().width()

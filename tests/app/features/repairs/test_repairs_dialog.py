@@ -168,3 +168,5 @@ def test_clips_without_repairs_say_so(drive, toy, tmp_path):
     drive.actions["repairs"].trigger()
     (dialog,) = shown(drive)
     assert "needed no repairs" in dialog.words.text()
+    drive.pause(30)
+    assert dialog.headline.y() < 60 and dialog.words.y() < 120, "they stand at the top, not in the middle"

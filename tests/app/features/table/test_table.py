@@ -12,6 +12,7 @@ from app.features.table.cell_words import parse_typed
 from app.features.table.table_filter import TableFilter, keep_filters, read_filters
 from metagraph.graph import edits
 from metagraph.playback.action_table import COLUMNS, find_row, read_cell
+from tests.app.painted_text import painted
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 KEY, CTRL, SHIFT = Qt.Key, Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftModifier
@@ -385,3 +386,22 @@ def test_enter_takes_what_was_typed_or_the_choice_that_was_gone_to(table):
 )
 def test_typed_words_are_the_domains_words(column, typed, text):
     assert parse_typed(column, typed) == text
+
+
+def test_an_empty_table_says_why(table):
+    table.panel.search.setText("no such thing")
+    words = " ".join(text.text for text in painted(table.view.viewport()))
+    assert "No row matches" in words
+    table.panel.search.clear()
+    assert not painted(table.view.viewport()) or "No row" not in painted(table.view.viewport())[0].text
+
+
+@pytest.mark.parametrize("width", [420, 1100])
+def test_the_search_is_wide_enough_to_read_what_is_sought(table, width):
+    panel = table.panel
+    panel.resize(width, 300)
+    table.drive.pause(30)
+    assert panel.search.width() >= 150
+    assert (panel.fill.y() > panel.search.y() + 10) == (width == 420), "a second line where one is too short"
+    for button in (panel.kept, panel.fill, panel.replace_button):
+        assert button.width() >= button.sizeHint().width()

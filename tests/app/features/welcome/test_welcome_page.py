@@ -7,7 +7,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app.features.welcome.welcome_page import WelcomePage
-from tests.app.painted_text import faults
+from tests.app.painted_text import faults, painted
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
@@ -91,3 +91,15 @@ def test_an_empty_project_has_it_in_every_workspace(drive, page, workspace):
     room = page.parentWidget()
     assert page.size() == room.size() and not page.visibleRegion().isEmpty()
     drive.workspaces.choose("graph")
+
+
+@pytest.mark.parametrize("width", [420, 900])
+def test_titles_beside_each_other_keep_to_a_line_and_no_button_is_cut(drive, page, width):
+    page.resize(width, 420)
+    drive.pause(20)
+    tops = [painted(card)[0].rect.bottom() for card in page.cards]
+    assert all(words == card.text() for card in page.cards for words in [painted(card)[0].text])
+    assert abs(tops[0] - tops[1]) < 4 and abs(tops[2] - tops[3]) < 4, "letters reach below a line or not"
+    for button in (page.guide, page.skip):
+        assert button.width() >= button.sizeHint().width()
+    page.follow()
