@@ -1,4 +1,4 @@
-"""What a mouse or a touchpad does to the camera, as in the program that the user is used to."""
+"""What a mouse, a touchpad or a pen does to the camera, as in the program that the user is used to."""
 
 from __future__ import annotations
 
@@ -107,6 +107,21 @@ NAVIGATIONS: Mapping[str, Navigation] = {
             ),
             {(_LEFT, _NONE): "orbit", (_LEFT, _SHIFT): "pan", (_LEFT, _CTRL): "zoom"},
             scroll_orbits=True,
+        ),
+        Navigation(
+            "pen",
+            tr_noop("Pen"),
+            tr_noop(
+                "Drag with the tip to orbit, with Shift or the lower button to pan, with Ctrl or the upper "
+                "button to zoom. Tap twice to frame"
+            ),
+            {
+                (_LEFT, _NONE): "orbit",
+                (_LEFT, _SHIFT): "pan",
+                (_LEFT, _CTRL): "zoom",
+                (_RIGHT, _NONE): "pan",
+                (_MIDDLE, _NONE): "zoom",
+            },
         ),
     )
 }

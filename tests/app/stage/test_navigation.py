@@ -32,6 +32,8 @@ CTRL, ALT = Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.AltModifier
         ("unreal", MIDDLE, NONE, "pan"),
         ("unreal", RIGHT, ALT, "zoom"),
         ("touchpad", LEFT, NONE, "orbit"),
+        ("pen", LEFT, NONE, "orbit"),
+        ("pen", RIGHT, NONE, "pan"),
     ],
 )
 def test_each_program_has_its_own_drags(program, button, held, move):
