@@ -16,7 +16,7 @@ from metagraph.motion.clip import Clip
 
 RATE = 60.0  # moments a second that are looked at
 LONGEST = 0.4  # seconds that may be left out at an end
-SHARE = 0.1  # of an action, likewise
+SHARE = 0.1  # of an action that may be left out at an end
 MOVING = 0.6  # m/s of the fastest joint, of a figure TALL metres high, that is seen to stop at once
 CALMER = 0.5  # share of its speed at the cut that the fastest joint has at most at a turn
 
