@@ -23,9 +23,7 @@ FLOWING = 0.2  # of its greatest speed: a clip that is so fast at its ends is a 
 CYCLE = (0.2, 1.25)  # seconds that one cycle of a movement that is made to repeat lasts
 FLOWS = 0.3  # of its greatest speed: what is so fast at its ends goes on across its seam
 TURNS = 0.45  # of its mean speed: what is so fast near its ends only turns round at its seam
-TURNS_NAMED = (
-    0.1  # likewise, of a clip that is named after a gesture: less is a pose that it begins and ends in
-)
+TURNS_NAMED = 0.1  # the same where its name is a gesture's: slower clips begin and end in a pose
 STROKES: Mapping[Layer, float] = {"arms": 0.15, "head": 0.08}  # heights a second: no breathing goes so fast
 HANGING = 0.1  # heights that hands go while nothing is done with them
 SHIFTS = 0.05  # heights that the hips go to a side: farther is a weight that is shifted, no rest
