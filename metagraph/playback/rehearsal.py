@@ -65,7 +65,7 @@ _NAMES = {
     "left_hand": phrase("the left hand"),
     "right_hand": phrase("the right hand"),
     "head": phrase("the head"),
-    "hips": phrase("the hips"),
+    "hips": phrase("the body"),
     "left_foot": phrase("the left foot"),
     "right_foot": phrase("the right foot"),
 }
@@ -269,6 +269,12 @@ class _Findings:
         places = self.seen.places
         changes = np.linalg.norm(np.diff(places, 2, axis=0), axis=-1) * RATE**2
         limits = np.maximum(USUAL * self.changes, JUMP * self.size)
+        if "hips" in self.seen.parts:  # what the hips take along is not reported once more for each part
+            part = self.seen.parts.index("hips")
+            hips = changes[:, [part]]
+            taken = (hips > limits[part]) & (hips >= OWN * changes)
+            taken[:, part] = False
+            changes = np.where(taken, 0.0, changes)
         for part, name in enumerate(self.seen.parts):
             for frame, value, cause, count in self._worst(changes[:, part], limits, part, 1):
                 near = places[frame : frame + 3, part]
@@ -291,6 +297,10 @@ class _Findings:
                     if cause.blending
                     else phrase("Look at the clip there: trim it, or smooth it in the program that made it.")
                 )
+                if name == "hips" and self._can_stay(cause.action):  # it walks, and begins again where it was
+                    remedy = phrase("Keep the clip in place.")
+                    yield self._problem("play-slide", words, remedy, frame + 1, cause, "error")
+                    continue
                 yield self._problem("play-jump", words, remedy, frame + 1, cause)
 
     def _own_moves(self, part: str, time: float, cause: _Cause) -> tuple[float, float]:

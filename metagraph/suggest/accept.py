@@ -14,6 +14,7 @@ from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, Kind, Layer, Project
 from metagraph.playback.timing.phases import find_phases
 from metagraph.suggest.flags import is_unlikely
+from metagraph.suggest.jumps.cut_swings import begin_at_turns
 from metagraph.suggest.jumps.soft_blends import soften_blends
 from metagraph.suggest.proposal import Proposal, Proposals, RestMoment, StancePlace, simplify_stance_name
 from metagraph.suggest.whole_body import CARRIER
@@ -75,7 +76,8 @@ def accept(
             placed.append(p.clip)
         except EditError as error:
             left[p.clip] = describe_error(error)
-    project = soften_blends(_begun(before, project), {action.id for action in before.actions()})
+    known = {action.id for action in before.actions()}
+    project = soften_blends(begin_at_turns(_begun(before, project), known), known)
     return AcceptedProposals(project, tuple(placed), left, held)
 
 

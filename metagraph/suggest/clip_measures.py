@@ -23,6 +23,7 @@ FLOWING = 0.2  # of its greatest speed: a clip that is so fast at its ends is a 
 CYCLE = (0.2, 1.25)  # seconds that one cycle of a movement that is made to repeat lasts
 FLOWS = 0.3  # of its greatest speed: what is so fast at its ends goes on across its seam
 TURNS = 0.45  # of its mean speed: what is so fast near its ends only turns round at its seam
+TURNS_NAMED = 0.1  # the same where its name is a gesture's: slower clips begin and end in a pose
 STROKES: Mapping[Layer, float] = {"arms": 0.15, "head": 0.08}  # heights a second: no breathing goes so fast
 HANGING = 0.1  # heights that hands go while nothing is done with them
 SHIFTS = 0.05  # heights that the hips go to a side: farther is a weight that is shifted, no rest
@@ -136,13 +137,14 @@ def _busy_idle(traits: Traits) -> float:
 def is_cycle(traits: Traits, named: bool = False, away: bool = False) -> bool:
     """Return whether a clip is one cycle of a gesture: short, with ends that meet amid the movement, and
     with hands or a head that go faster than an idle's. `named`: its name says that it is a gesture, so it
-    may be small, or of the whole body. `away`: it begins in no stance, so it may turn round at its ends.
+    may be small, or of the whole body. `away`: it begins in no stance, so it may turn round at its ends; with
+    the name of a gesture it may also be slow there, as where it was cut at the turn of a wave.
     """
     moves = find_layer_moving_most(traits).value
     x = traits.layers[moves]
     apart = max(y.loop_error / TYPICAL[layer] for layer, y in traits.layers.items())
     short = CYCLE[0] <= traits.duration <= CYCLE[1] and traits.face == 0
-    flows = x.flow >= FLOWS or (away and x.turning >= TURNS)
+    flows = x.flow >= FLOWS or (away and x.turning >= (TURNS_NAMED if named else TURNS))
     if not short or apart >= 0.1 or not flows or is_walk(traits):
         return False
     return named or x.peak >= STROKES.get(moves, inf)

@@ -44,6 +44,7 @@ from metagraph.suggest.stances.known import (
     Shape,
     discover,
     discover_stances,
+    join_surplus_stances,
     list_known_stances,
     measure_distance_from_stance,
     rank_stances,
@@ -330,6 +331,7 @@ def _shapes(
     for layer, shapes in found.items():
         if shapes:
             moves = [every[c].layers[layer] for c in mine if whole or guess_layer(every[c]).value == layer]
+            shapes = join_surplus_stances(shapes, len(moves))
             ends = _ends({c: every[c] for c in mine}, layer, called, whole)
             if len({word for *_, word in ends}) < 2:
                 shapes = settle_stances(

@@ -671,6 +671,23 @@ def idle_variations(made: MadeFault) -> None:
 
 
 @fault
+def takes_that_stand_a_little_differently(made: MadeFault) -> None:
+    """Many takes without telling names, in three poses, each of which stands some degrees differently: nobody
+    can use a stance for each of them.
+    """
+    joints = ("hips", "chest", "head", "left_upper_arm", "right_upper_arm", "left_lower_arm")
+    amount = made.draw.uniform(1.0, 2.5)
+    for n in range(48):
+        x = {joint: tuple(made.draw.normal(0, amount, 3).tolist()) for joint in joints}
+        pose = added((HANG, ON_HIPS, CROSSED)[n % 3], x)
+        made.moves[f"take {n:03}"] = made.idle(pose) if n % 4 == 0 else made.gesture(pose)
+    made.write()
+    for layer, graph in made.labelled.graphs.items():
+        names = [s.name for s in graph.stances.values()]
+        made.expect(len(names) <= 9, f"{layer}: they are {len(names)} stances: {names}")
+
+
+@fault
 def idles_close_together(made: MadeFault) -> None:
     """Three idles some 10 cm apart, of which nothing but gestures of the first continues, are one stance."""
     made.talker(stance="Idle01")

@@ -121,6 +121,16 @@ def test_a_transition_that_travels_slides_back_and_is_named(sound: Project, toy:
     assert toy.id(project, "rest to up") in {p.action for p in found}
 
 
+def test_a_stance_that_walks_jumps_back_and_is_reported_once(sound: Project) -> None:
+    walks = next(a for a in sound.graphs["body"].actions.values() if a.kind == "stance")
+    project = changed(sound, travelling(2.0), sound.clips[walks.clip].name)
+    found = [p for p in rehearse(project, SECONDS) if p.severity != "hint" and p.action == walks.id]
+    assert [(p.severity, p.code, p.remedy) for p in found if "jumps" in p.message] == [
+        ("error", "play-slide", "Keep the clip in place.")
+    ]
+    assert "the body jumps" in found[0].message
+
+
 def test_a_jump_within_a_clip_is_named_with_the_clip_s_action(toy: Any) -> None:
     project = changed(toy.project("arms"), jumping, "up point")
     found = [p for p in rehearse(project, SECONDS) if p.code == "clip-jump"]

@@ -93,6 +93,14 @@ def test_one_cycle_is_a_gesture_that_repeats_wherever_it_is_cut(name: str, cut: 
     assert p.layer.value == ("arms" if name in ARMS else "head")
 
 
+@pytest.mark.parametrize("cut", [0.2, 0.23, 0.27])
+@pytest.mark.parametrize("name", ARMS)
+def test_one_cycle_that_is_cut_near_its_turn_repeats_if_named(name: str, cut: float) -> None:
+    project, found = labelled(cycle(name, cut, 0.5))
+    p = proposal(project, found, name)
+    assert (p.kind.value, p.cycle) == ("gesture", True)
+
+
 def test_a_name_that_says_a_gesture_makes_a_small_movement_one() -> None:
     small = moved("Clapping", 0.77, lambda x: added(AHEAD, {"RightHand": (9, 0, 0)}, np.sin(6.283 * x)))
     project, found = labelled(small)

@@ -30,6 +30,7 @@ FAR = 0.08  # metres a joint may be from the stance at a clip's ends before it s
 OPEN_LOOP = 0.05  # metres a loop may be open if its seam is not blended
 LONG = 0.4  # seconds: a longer blend is a movement of its own, not a hidden seam
 UNHURRIED = 1.0  # metres a second: how fast, on average, the farthest joint may move in such a blend
+SHARE_SEEN = 0.38  # of what a gesture or fidget plays, that one blend may take, so that it is seen
 BRISK = 1.4  # times as far for what repeats: an arm that comes up to wave is a movement that is meant
 
 

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
+from metagraph.graph.checks.end_gaps import SHARE_SEEN
 from metagraph.graph.model import REACH, Project
 from metagraph.graph.words import Layer
 from metagraph.motion.clip import Clip
@@ -316,6 +317,7 @@ def propose_times(
     nearest moment that does, with room for the blends; once it looks like the stance it ends in, after its
     stroke and for good, it may be left.
     """
+    share = SHARE_SEEN if left is None else 0.5
     left = entered if left is None else left
     into, out, at = fit_clip(clip, entered), fit_clip(clip, left), track_seconds(clip)
     speed = (
@@ -344,7 +346,7 @@ def propose_times(
         end = finish
     most = max(0.0, end - start)
     room_in, room_out = (
-        most * (UNSEEN if _at(x, t) <= 1 else 0.5) for x, t in ((entered, start), (left, end))
+        most * (UNSEEN if _at(x, t) <= 1 else share) for x, t in ((entered, start), (left, end))
     )
     away = bool((left > 1).any())
     last = max(out.leave[-1][0] if out.leave else end, middle, _settled(clip, roles))

@@ -11,20 +11,20 @@ from metagraph.graph import edits
 from metagraph.graph.checks.end_gaps import (
     FAR,
     LONG,
+    SHARE_SEEN,
     TALL,
     UNHURRIED,
     Edge,
     find_end_gaps,
     measure_slides,
 )
-from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.model import LAYERS, Project, Timing
 from metagraph.graph.repeating import LEAST_CYCLE, cycle_of, usual_repeat
 
 NEAR = 0.05  # metres of a figure TALL metres high that nobody sees a blend go
 SLIDES = 0.25  # of that pace: how fast the hips go over the floor
 EDGES: tuple[Edge, Edge] = ("begins", "ends")
 SHARE = 0.45  # of a clip that a blend may take
-SHARE_REPEATED = 0.38  # of the seconds that an action repeats
 LONGEST = 3.0  # seconds that one repeats to have room for its blends
 SLOWER = 1.1  # times as long a blend for one that repeats, whose own movement is added
 
@@ -50,9 +50,9 @@ def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
             most, own, repeat = SHARE * (end - start), pace, timing.repeat
             if (cycle := cycle_of(action.kind, timing, start, end)) > 0:
                 own = pace / SLOWER
-                needed = max(far.values(), default=0.0) / own / SHARE_REPEATED
+                needed = max(far.values(), default=0.0) / own / SHARE_SEEN
                 repeat = max(repeat, round(cycle * min(ceil(needed / cycle), floor(LONGEST / cycle)), 3))
-                most = SHARE_REPEATED * repeat
+                most = SHARE_SEEN * repeat
             into, out = (
                 min(
                     most,
@@ -64,6 +64,8 @@ def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
                 )
                 for gap, way in ((far.get(edge, 0.0), slides.get(edge, 0.0)) for edge in EDGES)
             )
+            if action.kind != "transition":
+                into, out = _both_seen(into, out, timing, 2 * SHARE_SEEN * (repeat or end - start))
             longer = {
                 name: ceil(value * 1000) / 1000
                 for name, value, now in (
@@ -76,6 +78,13 @@ def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
             if longer:
                 changes[action.id] = {"timing": longer}
     return edits.update_each(project, changes) if changes else project
+
+
+def _both_seen(into: float, out: float, timing: Timing, room: float) -> tuple[float, float]:
+    """Return how long an action blends in and out, so that both together leave something to be seen."""
+    into, out = max(into, timing.blend_in), max(out, timing.blend_out)
+    half = room / 2
+    return min(into, max(half, room - out)), min(out, max(half, room - into))
 
 
 def repeat_actions(project: Project, actions: Collection[str], on: bool = True) -> Project:
@@ -92,7 +101,7 @@ def repeat_actions(project: Project, actions: Collection[str], on: bool = True) 
             continue
         timing: dict[str, float] = {"repeat": usual_repeat(end - start)}
         if not on:
-            most = round(SHARE * (end - start), 3)
+            most = round(SHARE_SEEN * (end - start), 3)
             now = {"blend_in": action.timing.blend_in, "blend_out": action.timing.blend_out}
             timing = {"repeat": 0.0, **{name: min(most, blend) for name, blend in now.items()}}
         changes[ident] = {"timing": timing}

@@ -35,6 +35,9 @@ SAME: Mapping[Layer, tuple[float, float]] = {
     "body": (0.008, 0.025),
 }
 NEAR: Mapping[Layer, float] = {"arms": 0.008, "head": 0.003, "body": 0.003}  # heights within which ends meet
+# Heights within which one of too many stances is another's, as far as it takes: up to 17 cm of one 1.7 m tall
+ALIKE = (0.03, 0.057, 0.075, 0.1)
+USABLE = 9  # stances of a layer, up to which all are kept
 STRAY = 0.002  # of the weight an end has that lies in a stance, of one that lies in none
 FINGERTIP = 0.5  # how much a fingertip's place counts beside the hand's
 MOST = 400  # poses joined at once; more are thinned out first
@@ -264,6 +267,32 @@ def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False)
             Shape("", clip, layer, names, poses_of, tuple(members), clip, at, confidence, calm, spread)
         )
     return tuple(sorted(shapes, key=lambda s: (-len(s.members), s.clip)))
+
+
+def join_surplus_stances(shapes: Sequence[Shape], clips: int) -> tuple[Shape, ...]:
+    """Return discovered stances; of more than a person can use, those that few of so many clips are in become
+    one with a stance that they look like: takes of a day stand a little differently each time.
+    """
+    kept, scarce = tuple(shapes), SCARCE * clips
+    for reach in ALIKE:
+        if len(kept) <= USABLE:
+            break
+        kept = _joined_within(reach, kept, scarce)
+    return kept
+
+
+def _joined_within(reach: float, shapes: Sequence[Shape], scarce: float) -> tuple[Shape, ...]:
+    kept: list[Shape] = []
+    for shape in shapes:
+        away = [(measure_distance_from_stance(s, shape.names, shape.poses[0]), n) for n, s in enumerate(kept)]
+        least, nearest = min(away, default=(float("inf"), -1))
+        if least > reach or len(shape.members) > max(1.0, scarce):
+            kept.append(shape)
+            continue
+        one = kept[nearest]
+        members = tuple(dict.fromkeys((*one.members, *shape.members)))
+        kept[nearest] = replace(one, members=members, poses=np.concatenate([one.poses, shape.poses]))
+    return tuple(sorted(kept, key=lambda s: (-len(s.members), s.clip)))
 
 
 Ends = Sequence[tuple[str, float, Array, str]]  # clip, second, pose there, and what its name says of it

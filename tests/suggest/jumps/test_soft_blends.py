@@ -76,3 +76,11 @@ def test_hips_over_another_spot_get_time_to_come_back_unless_that_is_far(
     before = wave.timing.blend_out
     after = soften_blends(project).action(wave.id).timing.blend_out
     assert (after > before + 0.05) == longer
+
+
+def test_blends_of_a_short_gesture_leave_something_to_be_seen(project: Project, toy: Any) -> None:
+    wave = toy.id(project, "rest wave rt")
+    after = soften_blends(edits.update_actions(project, [wave], timing={"start": 0.45, "end": 0.85}))
+    timing = after.action(wave).timing  # type: ignore[union-attr]
+    assert max(timing.blend_in, timing.blend_out) > 0.1
+    assert not [x for x in check_project(after) if x.action == wave and x.code == "hardly-seen"]

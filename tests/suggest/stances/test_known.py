@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from metagraph.suggest.stances.known import (
     Shape,
     discover,
     discover_stances,
+    join_surplus_stances,
     list_known_stances,
     measure_distance_from_stance,
     rank_likely_stances,
@@ -339,3 +341,21 @@ def test_together_the_clips_of_all_layers_tell_the_stances(toy: Any, found: dict
     every = {c for s in discover(found, "arms", together=True) for c in s.members}
     others = {c for c, t in found.items() if guess_layer(t).value != "arms"}
     assert not apart & others and every & others
+
+
+def stance_of(name: str, x: float, members: int) -> Shape:
+    shape = standing([[x, 0.5, 0], [-x, 0.5, 0]], name=name)
+    return replace(shape, members=tuple(f"{name}{n}" for n in range(members)))
+
+
+def test_of_too_many_stances_those_of_few_clips_join_the_one_they_look_like() -> None:
+    many = [stance_of("hips", 0.0, 40), stance_of("chin", 0.3, 40)]
+    days = [stance_of(f"day {n}", x + 0.002 * n, 1) for n in range(20) for x in (0.0, 0.3)]
+    found = join_surplus_stances([*many, *days], 120)
+    assert [s.clip for s in found] == ["chin", "hips"]
+    assert [len(s.members) for s in found] == [60, 60] and len(found[0].poses) == 21
+    assert join_surplus_stances(days[:8], 8) == tuple(days[:8])  # a person can use eight
+    apart = [stance_of(f"far {n}", 0.2 * n, 1) for n in range(20)]
+    assert len(join_surplus_stances(apart, 100)) == 20
+    used = [stance_of(f"used {n}", 0.01 * n, 10) for n in range(20)]
+    assert len(join_surplus_stances(used, 100)) == 20
