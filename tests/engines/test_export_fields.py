@@ -95,6 +95,7 @@ NOT_HEARD = {
     "layers.*.own_markov": "for programs that edit",
     "touch.guard": "for programs that edit; contact_rig.guard is played",
     "points.*.[]": "no case looks at one",
+    "joints.[].translation.[]": "in the GLB as well, which runtimes read",
     "layers.*.markov.positive": "only where a model has no tags, as none here",
     "layers.*.markov.negative": "as above",
     "height": "of the figure, for whoever shows it",
@@ -103,7 +104,7 @@ NOT_HEARD = {
     "planner.hurry": "a constant",
     "planner.least_blend": "a constant",
 }
-WHOLE = ("standing", "random1")  # exports with every field; what one does not play the other does
+WHOLE = ("standing", "random1", "steady")  # exports with every field; what one does not play another does
 MANY = 130  # cases that are played
 MATRIX = "layers.*.markov.matrix.[].[]"
 
@@ -143,15 +144,17 @@ def _play(target: Path, folder: str, field: str) -> Path:
     made = shutil.copytree(FOLDER.with_name(folder), target / (field.replace("*", "all") or "plain") / folder)
     path = made / f"{folder}.json"
     document, before = (json.loads(path.read_bytes()) for _ in range(2))
-    for place in _fields_of(folder).get(field, ()):
+    places = _fields_of(folder).get(field, ())
+    added = 0.01 if all(value == 0 for path, value in _leaves(before) if path in places) else 0.0
+    for place in places:
         part, was = document, before
         for key in place[:-1]:
             part, was = part[key], was[key]
         value = was[place[-1]]
         if field == MATRIX:  # rows that sum to 1
-            part[place[-1]] = was[-1 - place[-1]]
+            part[place[-1]] = was[-1 - int(place[-1])]
         else:
-            part[place[-1]] = not value if isinstance(value, bool) else 0.8 * value + 0.01
+            part[place[-1]] = not value if isinstance(value, bool) else 0.8 * value + added
     path.write_text(json.dumps(document))
     cases = [c for c in list_cases(read_export(path, resolved=True)) if not c.name.startswith("asked again")]
     write_vectors(path, cases[:MANY])
