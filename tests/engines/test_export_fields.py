@@ -107,6 +107,7 @@ NOT_HEARD = {
 WHOLE = ("standing", "random1", "steady")  # exports with every field; what one does not play another does
 MANY = 130  # cases that are played
 MATRIX = "layers.*.markov.matrix.[].[]"
+DIRECTION = "weight_rig.knees.[].[]"  # whose length does not matter
 
 
 def _leaves(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[tuple[str | int, ...], Any]]:
@@ -145,7 +146,8 @@ def _play(target: Path, folder: str, field: str) -> Path:
     path = made / f"{folder}.json"
     document, before = (json.loads(path.read_bytes()) for _ in range(2))
     places = _fields_of(folder).get(field, ())
-    added = 0.01 if all(value == 0 for path, value in _leaves(before) if path in places) else 0.0
+    still = all(value == 0 for path, value in _leaves(before) if path in places)
+    added = 0.01 if still or field == DIRECTION else 0.0
     for place in places:
         part, was = document, before
         for key in place[:-1]:
