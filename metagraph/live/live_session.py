@@ -56,9 +56,9 @@ from metagraph.live.messages import (
 from metagraph.live.partner_mood import LAUGH, MOOD, find_partner_feel
 from metagraph.live.pose_stream import Stream, collect_due_frames
 from metagraph.live.said_sound import SaidSounds, join_asks
-from metagraph.live.said_text import SaidTexts
+from metagraph.live.said_text import SaidTexts, is_told
 from metagraph.live.settling import Settling
-from metagraph.live.steering import Steering, is_steering
+from metagraph.live.steering import Steering, SteeringRequest, is_steering
 from metagraph.live.tape import Tape
 from metagraph.live.tick_work import Agent, Client, Open, Out, TickWork, order_requests, thin_track
 from metagraph.motion.skeleton import Pose
@@ -249,9 +249,8 @@ class LiveSession:
         if isinstance(ask, a.Bml):
             return self._block(client, Open(place, ident, key), ask, work)
         if is_steering(ask):
-            if isinstance(ask, a.Interrupt | a.Finish):
-                self._texts.close(plan_key(client.owner, ask.what), not ask.what)
-            return self._steering.answer(client, ident, ask, self.plan, self.now, work)
+            reply = self._steering.answer(client, ident, ask, self.plan, self.now, work)
+            return self._note_left(client, ask, reply)
         notes = self._note_unknown_point(ask)
         if isinstance(ask, a.Say) and (ask.text or self._steering.is_open(self.plan, key, work)):
             opened = self._steering.is_open(self.plan, key, work)
@@ -278,14 +277,24 @@ class LiveSession:
         """Return the reply to a text of which nothing is said; None for others. opened: whether it is added
         to an utterance, whose last mark it may be.
         """
-        told = ask.words or ask.characters or ask.visemes or ask.audio or ask.line or ask.duration
-        if told or telling(ALPHABET, ask.text) or (opened and ask.text.strip()):
+        if is_told(ask) or telling(ALPHABET, ask.text) or (opened and ask.text.strip()):
             return None
         if opened and not ask.more:  # nothing more comes
             over = a.Finish(id=ask.id, what=ident, told=self.now, priority=ask.priority)
             return self._steering.answer(client, ident, over, self.plan, self.now, work)
         why = str(phrase("the text contains no words to say"))
         return Reply(id=ident, state="done" if ask.more else "refused", why=why)
+
+    def _note_left(self, client: Client, ask: SteeringRequest, reply: Reply) -> Reply:
+        """Return the reply to a request that may end utterances, with what of those that are finished still
+        waited to be said.
+        """
+        if not isinstance(ask, a.Interrupt | a.Finish):
+            return reply
+        left = self._texts.close(plan_key(client.owner, ask.what), not ask.what)
+        if not left or isinstance(ask, a.Interrupt):
+            return reply
+        return msgspec.structs.replace(reply, notes=(str(phrase("left out: {what}", what=left[:200])),))
 
     def _note_unknown_point(self, ask: Any) -> tuple[str, ...]:
         """Return a note where a request is a look at a name that nothing has."""

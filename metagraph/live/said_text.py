@@ -12,7 +12,7 @@ from metagraph.common.wording import Phrase
 from metagraph.graph.requests import Say
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.line_timing import measure_text, pace_text, timed_seconds
-from metagraph.speech.spoken_text import SpokenPart, SpokenText, read_spoken, read_spoken_line
+from metagraph.speech.spoken_text import SpokenPart, SpokenText, join_spoken, read_spoken
 
 TEXTS = 1000  # utterances whose last token is remembered
 PAUSE = 0.25  # seconds from which on a break is a pause, not a comma
@@ -48,26 +48,34 @@ class SaidTexts:
         """Return an ask to say a text with what of it is to be said, and what was left out. opened: whether
         more of its utterance was promised, or that is paused.
         """
-        told = ask.words or ask.characters or ask.visemes or ask.audio or ask.line or ask.duration
+        told = is_told(ask)
         if not told and (ask.more or opened or self.is_open(key)):
             text, left_out = self.take(key, ask.text, ask.more)
             return msgspec.structs.replace(ask, text=text), left_out
         self.close(key)
         parts, left_out = read_spoken(ask.text)
-        text, _ = read_spoken_line(ask.text)
         pauses = not told and any(part.pause >= PAUSE for part in parts[:-1])
-        return msgspec.structs.replace(
-            ask, text=text, words=place_words(parts) if pauses else ask.words
-        ), left_out
+        words = place_words(parts) if pauses else ask.words
+        return msgspec.structs.replace(ask, text=join_spoken(parts), words=words), left_out
 
     def is_open(self, key: str) -> bool:
         """Return whether the last token of an utterance said that more come."""
         return key in self._open
 
-    def close(self, key: str, every: bool = False) -> None:
-        """Forget the tokens of an utterance that is over. every: those of all keys that begin so."""
+    def close(self, key: str, every: bool = False) -> str:
+        """Forget the tokens of an utterance that is over; return what still waited for the next one. every:
+        those of all keys that begin so.
+        """
+        left = []
         for known in [x for x in self._open if x == key or (every and x.startswith(key))]:
-            del self._open[known]
+            reader, _ = self._open.pop(known)
+            left += [part.text for part in reader.take("", over=True)]
+        return " ".join(left).strip()
+
+
+def is_told(ask: Say) -> bool:
+    """Return whether a request says by more than its text what is said, or for how long."""
+    return bool(ask.words or ask.characters or ask.visemes or ask.audio or ask.line or ask.duration)
 
 
 def place_words(parts: Sequence[SpokenPart]) -> list[list[object]]:

@@ -123,6 +123,11 @@ def read_spoken(text: str) -> tuple[list[SpokenPart], list[Phrase]]:
 def read_spoken_line(text: str) -> tuple[str, list[Phrase]]:
     """Return what of a text is to be said as one line, pauses as commas, and what was left out of it."""
     parts, left_out = read_spoken(text)
+    return join_spoken(parts), left_out
+
+
+def join_spoken(parts: Sequence[SpokenPart]) -> str:
+    """Return parts of a text as one line, pauses as commas."""
     line = ""
     for n, part in enumerate(parts):
         said = part.text.strip()
@@ -130,7 +135,7 @@ def read_spoken_line(text: str) -> tuple[str, list[Phrase]]:
             comma = parts[n - 1].pause > 0 and line[-1].isalnum()
             line += ", " if comma else " "
         line += said
-    return _BEFORE_MARK.sub(r"\1", " ".join(line.split())), left_out
+    return _BEFORE_MARK.sub(r"\1", " ".join(line.split()))
 
 
 def _find_certain(text: str, open_: Sequence[re.Pattern[str]]) -> int:

@@ -474,3 +474,11 @@ def test_a_look_at_something_that_nobody_has_placed_says_so(talk: Talk) -> None:
     assert "nothing is called 'usr'" in talk.ask(do="look", to="usr")["notes"][0]
     talk.ask(do="place", name="usr", point=[0.0, 1.5, 2.0])
     assert "notes" not in talk.ask(do="look", to="usr") or not talk.ask(do="look", to="usr")["notes"]
+
+
+def test_a_token_that_still_waited_when_an_utterance_is_finished_is_named(talk: Talk) -> None:
+    talk.ask(do="say", id="a", text="Meet me", more=True)
+    assert talk.ask(do="say", id="a", text=" home@ten", more=True)["state"] == "done"
+    assert talk.ask(do="finish", what="a")["notes"] == ("left out: home@ten",)
+    talk.wait(3.0)
+    assert talk.ends("a") == ["finished"]
