@@ -24,6 +24,7 @@ from metagraph.graph.model import Project
 from tests.app.window_state import differences, is_ours, state_of
 
 SETTLED = 60.0  # seconds; a slow machine takes its time over jobs
+SOON = 10_000  # milliseconds; what waits longer waits for somebody who does nothing
 
 
 class SharedWindow:
@@ -147,7 +148,7 @@ def hold_of(window: Any) -> PaintingHold:
 def settle(window: Any) -> None:
     """Wait until nothing goes on; what would be done soon is done now."""
     jobs, deadline = window.shell.jobs, time.monotonic() + SETTLED
-    soon = {t: t.interval() for t in window.findChildren(QTimer) if t.isSingleShot()}
+    soon = {t: t.interval() for t in window.findChildren(QTimer) if t.isSingleShot() and t.interval() < SOON}
 
     def waiting() -> list[QTimer]:
         return [t for t in soon if isValid(t) and t.isActive()]
