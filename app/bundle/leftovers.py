@@ -43,6 +43,4 @@ SITE = (
         "assistant", "designer", "linguist", "qt", "qtdeclarative",
     )),
     "numpy/**/tests", "numpy/f2py", "numpy/distutils", "pyqtgraph/examples", "PIL/*.pyi",
-    # A format of pictures that no character has.
-    "PIL/_avif*.so", "pillow.libs/libavif*",
 )  # fmt: skip
