@@ -35,7 +35,8 @@ def make_folder(out: Path, tell: Tell = print, updates: str = "", studio: str = 
     """
     if updates and not is_safe(updates):
         raise ValueError(f"'{updates}' does not begin with https://")
-    folder = out / "metagraph"
+    # Libraries that are inside already are told by their whole path.
+    folder = out.resolve() / "metagraph"
     if folder.exists():
         shutil.rmtree(folder)
     tell("Copying Python")
