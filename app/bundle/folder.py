@@ -35,7 +35,7 @@ def make_folder(out: Path, tell: Tell = print, updates: str = "", studio: str = 
     """
     if updates and not is_safe(updates):
         raise ValueError(f"'{updates}' does not begin with https://")
-    # Libraries that are inside already are told by their whole path.
+    # What ldd reports is compared with whole paths.
     folder = out.resolve() / "metagraph"
     if folder.exists():
         shutil.rmtree(folder)
@@ -67,13 +67,25 @@ def make_folder(out: Path, tell: Tell = print, updates: str = "", studio: str = 
         stripdir=str(folder),
         rx=re.compile(UNCOMPILED),
     )
-    for name in ("metagraph", "metagraph.desktop", "metagraph.xml"):
+    for name in ("README.txt", "metagraph.desktop", "metagraph.xml"):
         shutil.copy(LAUNCHER / name, folder)
     shutil.copy(ROOT / "app" / "look" / "metagraph.svg", folder)
     shutil.copy(ROOT / "LICENSE", folder)
-    (folder / "metagraph").chmod(0o755)
-    subprocess.run([python, "-I", "-c", "import app.cli.parser"], check=True)
+    make_launcher(folder / "metagraph")
+    # What was stripped must still load.
+    subprocess.run([python, "-I", "-c", f"import app.cli.parser, {', '.join(STRIPPED)}"], check=True)
     return folder
+
+
+def make_launcher(to: Path) -> None:
+    """Compile the program that starts a bundle. File managers take one at a fixed address (no-pie) for a
+    program, and others for a library. Raises FileNotFoundError without a C compiler.
+    """
+    compiler = shutil.which("cc")
+    if compiler is None:
+        raise FileNotFoundError("making a bundle needs a C compiler, on Debian or Ubuntu: apt install gcc")
+    source = LAUNCHER / "metagraph.c"
+    subprocess.run([compiler, "-O2", "-s", "-no-pie", "-fno-pie", "-o", str(to), str(source)], check=True)
 
 
 def find_site(folder: Path) -> Path:

@@ -13,7 +13,7 @@ from metagraph import __version__
 # What a desktop has and the bundle leaves to it; Debian's names.
 DEPENDS = (
     "libc6 (>= {glibc}), libgl1, libegl1, libfontconfig1, libfreetype6, libx11-6, libx11-xcb1, libxcb1, "
-    "libdbus-1-3, libglib2.0-0 | libglib2.0-0t64, libasound2 | libasound2t64"
+    "libdbus-1-3, libgssapi-krb5-2, libglib2.0-0 | libglib2.0-0t64, libasound2 | libasound2t64"
 )
 WHEN = 946684800  # 2000-01-01: a package made again is the same to the byte
 
