@@ -50,6 +50,7 @@ def pack_deb(folder: Path, to: Path, glibc: str) -> Path:
     ):
         (tree / place).mkdir(parents=True)
         shutil.move(tree / "opt" / "metagraph" / source, tree / place / source)
+    (tree / "opt" / "metagraph" / "README.txt").unlink()  # how a folder that was unpacked is started
     (tree / "usr" / "bin").mkdir(parents=True)
     (tree / "usr" / "bin" / "metagraph").symlink_to("/opt/metagraph/metagraph")
     size = sum(path.lstat().st_size for path in tree.rglob("*")) // 1024

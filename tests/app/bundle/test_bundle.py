@@ -27,7 +27,7 @@ def bundle(tmp_path):
     python.parent.mkdir(parents=True)
     python.write_text('#!/bin/sh\nprintf "%s\\n" "$QT_QPA_PLATFORMTHEME" "$@"\n')
     python.chmod(0o755)
-    for name in ("metagraph.desktop", "metagraph.xml"):
+    for name in ("README.txt", "metagraph.desktop", "metagraph.xml"):
         shutil.copy(LAUNCHER / name, made)
     shutil.copy(folder.ROOT / "app" / "look" / "metagraph.svg", made)
     if shutil.which("cc") is None:
@@ -104,6 +104,7 @@ def test_a_debian_package_has_a_command_a_menu_entry_and_what_it_needs(bundle, t
         "./opt/metagraph/python/bin/python3",
     ):
         assert name in listed
+    assert "README.txt" not in listed, "it says how to start the folder"
     assert not (tmp_path / "deb").exists(), "nothing is left beside it"
 
 
