@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 
 from metagraph import __version__
+from metagraph.common.disk_cache import cache_folder
 from metagraph.common.extras import EXTRAS, find_extras_folder, is_bundle, is_installed
 from metagraph.common.programs import ROOT
-from metagraph.common.user_folders import find_user_folder
 
 PACKAGES = ("PySide6_Essentials", "numpy", "moderngl", "pyqtgraph", "pyyaml", "av", "msgspec")
 
@@ -26,7 +26,7 @@ def make_system_report() -> dict[str, str]:
         "Screen": os.environ.get("WAYLAND_DISPLAY") or os.environ.get("DISPLAY") or "none",
         "OpenGL": _describe_opengl(),
         "Sound": _describe_sound(),
-        "Caches": str(find_user_folder("caches")),
+        "Caches": str(cache_folder("")),
         "Settings": _find_settings(),
         "Extras": ", ".join(name for name in EXTRAS if is_installed(name)) or "none",
         "Extras' folder": str(find_extras_folder()) if is_bundle() else "the environment of this Python",
