@@ -18,5 +18,5 @@ def contribute(shell: Shell) -> Contribution:
     return Contribution(
         commands=bind_commands(COMMANDS, files),
         header=(HeaderItem("left", "import"), HeaderItem("left", "undo"), HeaderItem("left", "redo")),
-        drops=(files.labels.drop, make_project_drop(shell.files)),
+        drops=(files.labels.drop, make_project_drop(files.files)),
     )
