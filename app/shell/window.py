@@ -133,7 +133,6 @@ class Window(QMainWindow):
         self.header = shell.services.add(Header(shell.document, session, shell.actions, [tabs, *items], self))
         self.addToolBar(self.header)
         self.drop_frame = DropFrame(self, session.look, tr("Drop to import"))
-        self.open_frame = DropFrame(self, session.look, tr("Drop to open"))
         self.job_line = JobLine(shell.jobs, self)
         self.statusBar().addPermanentWidget(self.job_line)
         self.statusBar().addPermanentWidget(shell.notice)
@@ -323,7 +322,7 @@ class Window(QMainWindow):
         if self.shell.importing.takes(paths):
             event.acceptProposedAction()
             opens = any(path.name.lower().endswith(SUFFIX) for path in paths)
-            (self.open_frame if opens else self.drop_frame).follow(event)
+            self.drop_frame.follow(event, tr("Drop to open") if opens else "")
 
     def dragMoveEvent(self, event: QDragMoveEvent) -> None:
         if self.shell.importing.takes(list_dropped_files(event)):
