@@ -72,6 +72,7 @@ def make_folder(out: Path, tell: Tell = print, updates: str = "", studio: str = 
     shutil.copy(ROOT / "app" / "look" / "metagraph.svg", folder)
     shutil.copy(ROOT / "LICENSE", folder)
     make_launcher(folder / "metagraph")
+    set_rights(folder)
     # What was stripped must still load.
     subprocess.run([python, "-I", "-c", f"import app.cli.parser, {', '.join(STRIPPED)}"], check=True)
     return folder
@@ -137,6 +138,25 @@ def install_packages(site: Path) -> None:
             check=True,
             env={**os.environ, "PIP_ROOT_USER_ACTION": "ignore"},
         )
+    remove_source(site)
+
+
+def remove_source(site: Path) -> None:
+    """Remove where pip found Metagraph: a folder for the moment, which differs in each bundle."""
+    for path in site.glob("metagraph_studio-*.dist-info/direct_url.json"):
+        path.unlink()
+        record = path.with_name("RECORD")
+        lines = record.read_text("utf-8").splitlines(keepends=True)
+        kept = [line for line in lines if f"/{path.name}," not in line]
+        record.write_text("".join(kept), "utf-8")
+
+
+def set_rights(folder: Path) -> None:
+    """Give all files of a folder the rights that they have for anybody, whatever its maker's umask."""
+    for path in (folder, *folder.rglob("*")):
+        if not path.is_symlink():
+            runs = path.is_dir() or path.stat().st_mode & 0o100
+            path.chmod(0o755 if runs else 0o644)
 
 
 def remove_matches(folder: Path, patterns: tuple[str, ...]) -> None:

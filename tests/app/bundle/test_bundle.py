@@ -108,6 +108,21 @@ def test_a_debian_package_has_a_command_a_menu_entry_and_what_it_needs(bundle, t
     assert not (tmp_path / "deb").exists(), "nothing is left beside it"
 
 
+def test_nothing_tells_where_and_by_whom_a_bundle_was_made(tmp_path):
+    place = tmp_path / "metagraph_studio-0.1.0.dist-info"
+    place.mkdir()
+    (place / "direct_url.json").write_text('{"url": "file:///tmp/tmpx8/source"}')
+    (place / "RECORD").write_text(f"app/__init__.py,,\n{place.name}/direct_url.json,sha256=x,9\n")
+    (place / "run").touch(0o700)
+    (place / "RECORD").chmod(0o600)
+    folder.remove_source(tmp_path)
+    folder.set_rights(tmp_path)
+    assert not (place / "direct_url.json").exists()
+    assert (place / "RECORD").read_text() == "app/__init__.py,,\n"
+    rights = {path.name: path.stat().st_mode & 0o777 for path in (place, *place.iterdir())}
+    assert rights == {place.name: 0o755, "run": 0o755, "RECORD": 0o644}
+
+
 def test_a_pattern_of_leftovers_that_matches_nothing_is_reported(tmp_path):
     (tmp_path / "a.txt").touch()
     folder.remove_matches(tmp_path, ("*.txt",))
