@@ -16,6 +16,7 @@ from tempfile import TemporaryDirectory
 
 from app.bundle.leftovers import PYTHON, SITE, STRIPPED, UNCOMPILED
 from app.bundle.libraries import add_libraries, set_search_path
+from app.project.menu_entry import DESKTOP
 from app.shell.update_check import ADDRESS, is_safe
 from metagraph.common.studio import ADDRESS as STUDIO
 
@@ -67,15 +68,22 @@ def make_folder(out: Path, tell: Tell = print, updates: str = "", studio: str = 
         stripdir=str(folder),
         rx=re.compile(UNCOMPILED),
     )
-    for name in ("README.txt", "metagraph.desktop", "metagraph.xml"):
-        shutil.copy(LAUNCHER / name, folder)
-    shutil.copy(ROOT / "app" / "look" / "metagraph.svg", folder)
+    add_desktop_files(folder / DESKTOP)
+    shutil.copy(LAUNCHER / "README.txt", folder)
     shutil.copy(ROOT / "LICENSE", folder)
     make_launcher(folder / "metagraph")
     set_rights(folder)
     # What was stripped must still load.
     subprocess.run([python, "-I", "-c", f"import app.cli.parser, {', '.join(STRIPPED)}"], check=True)
     return folder
+
+
+def add_desktop_files(place: Path) -> None:
+    """Copy what a desktop's menu needs; in a folder below, where nobody takes it for the program."""
+    place.mkdir(parents=True)
+    for name in ("metagraph.desktop", "metagraph.xml"):
+        shutil.copy(LAUNCHER / name, place)
+    shutil.copy(ROOT / "app" / "look" / "metagraph.svg", place)
 
 
 def make_launcher(to: Path) -> None:

@@ -8,6 +8,7 @@ import subprocess
 import tarfile
 from pathlib import Path
 
+from app.project.menu_entry import DESKTOP
 from metagraph import __version__
 
 # What a desktop has and the bundle leaves to it; Debian's names.
@@ -49,7 +50,7 @@ def pack_deb(folder: Path, to: Path, glibc: str) -> Path:
         ("metagraph.svg", "usr/share/icons/hicolor/scalable/apps"),
     ):
         (tree / place).mkdir(parents=True)
-        shutil.move(tree / "opt" / "metagraph" / source, tree / place / source)
+        shutil.move(tree / "opt" / "metagraph" / DESKTOP / source, tree / place / source)
     (tree / "opt" / "metagraph" / "README.txt").unlink()  # how a folder that was unpacked is started
     (tree / "usr" / "bin").mkdir(parents=True)
     (tree / "usr" / "bin" / "metagraph").symlink_to("/opt/metagraph/metagraph")

@@ -15,6 +15,7 @@ from metagraph.common.programs import find_system_program, run_program
 from metagraph.common.user_folders import find_user_folder
 
 NAME = "metagraph.desktop"
+DESKTOP = "python/share/metagraph"  # where a bundle has them
 # What lies in a bundle, and the folder that desktops look for it in, below the user's for data.
 FILES = {
     NAME: "applications",
@@ -29,7 +30,7 @@ def find_unpacked_bundle() -> Path | None:
     where this is no bundle.
     """
     folder = Path(sys.prefix).parent
-    return folder if is_bundle() and (folder / NAME).exists() else None
+    return folder if is_bundle() and (folder / DESKTOP / NAME).exists() else None
 
 
 def is_in_menu(bundle: Path) -> bool:
@@ -51,7 +52,7 @@ def add_to_menu(bundle: Path) -> None:
         if name == NAME:
             (data / place / name).write_text(_entry(bundle), "utf-8")
         else:
-            shutil.copyfile(bundle / name, data / place / name)
+            shutil.copyfile(bundle / DESKTOP / name, data / place / name)
     _tell_desktop(data)
 
 
@@ -70,7 +71,7 @@ def _entry(bundle: Path) -> str:
     quoted = "".join(f"\\{c}" if c in '"`$\\' else c for c in program).replace("%", "%%")
     start = f'"{quoted}" window %F'.replace("\\", "\\\\")  # quoted as an argument, then as a text
     lines = []
-    for line in (bundle / NAME).read_text("utf-8").splitlines():
+    for line in (bundle / DESKTOP / NAME).read_text("utf-8").splitlines():
         if line.startswith("Exec="):
             lines += ["TryExec=" + program.replace("\\", "\\\\"), f"Exec={start}"]
         else:

@@ -13,6 +13,7 @@ import pytest
 
 from app.bundle import folder, libraries, packages
 from app.cli import system_libraries
+from app.project import menu_entry
 from metagraph import __version__
 
 LAUNCHER = Path(folder.__file__).parent / "launcher"
@@ -27,9 +28,8 @@ def bundle(tmp_path):
     python.parent.mkdir(parents=True)
     python.write_text('#!/bin/sh\nprintf "%s\\n" "$QT_QPA_PLATFORMTHEME" "$@"\n')
     python.chmod(0o755)
-    for name in ("README.txt", "metagraph.desktop", "metagraph.xml"):
-        shutil.copy(LAUNCHER / name, made)
-    shutil.copy(folder.ROOT / "app" / "look" / "metagraph.svg", made)
+    folder.add_desktop_files(made / menu_entry.DESKTOP)
+    shutil.copy(LAUNCHER / "README.txt", made)
     if shutil.which("cc") is None:
         pytest.skip("needs a C compiler")
     folder.make_launcher(made / "metagraph")

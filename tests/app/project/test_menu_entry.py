@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from app.bundle.folder import LAUNCHER, ROOT
+from app.bundle.folder import add_desktop_files
 from app.project import menu_entry
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="Windows has no such entries")
@@ -21,10 +21,7 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="Windows has no such ent
 def bundle(tmp_path, monkeypatch):
     """An unpacked bundle in a folder with letters that need care, and a home of its own."""
     folder = tmp_path / 'Мои $1 "100%" программы' / "metagraph"
-    folder.mkdir(parents=True)
-    for name in ("metagraph.desktop", "metagraph.xml"):
-        shutil.copy(LAUNCHER / name, folder)
-    shutil.copy(ROOT / "app" / "look" / "metagraph.svg", folder)
+    add_desktop_files(folder / menu_entry.DESKTOP)
     (folder / "metagraph").write_text("#!/bin/sh\n")
     (folder / "metagraph").chmod(0o755)
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
@@ -70,7 +67,7 @@ def test_an_entry_of_another_folder_is_not_this_ones(bundle):
 
 
 def test_one_that_a_package_installed_has_none_to_add(bundle, monkeypatch):
-    (bundle / "metagraph.desktop").unlink()
+    (bundle / menu_entry.DESKTOP / "metagraph.desktop").unlink()
     assert menu_entry.find_unpacked_bundle() is None
     monkeypatch.setattr(menu_entry, "is_bundle", lambda: False)
     assert menu_entry.find_unpacked_bundle() is None
