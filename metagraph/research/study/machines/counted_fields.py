@@ -57,7 +57,7 @@ Step = FromNames | SetFound
 
 
 @dataclass(frozen=True)
-class Filled:
+class FilledTable:
     """operators: of the hands. seconds: predicted. score: beside the reference."""
 
     steps: tuple[Step, ...]
@@ -66,7 +66,7 @@ class Filled:
     score: Score
 
 
-def label_by_fields(reference: Project, from_names: bool = True) -> Filled:
+def label_by_fields(reference: Project, from_names: bool = True) -> FilledTable:
     """Label a reference's clips field by field in the quickest order that is tried; `from_names`: also with
     patterns of names. Raises ValueError if none labels them all.
     """
@@ -89,7 +89,7 @@ def strip_labels(reference: Project) -> Project:
     return project
 
 
-def carry_out(project: Project, step: Step) -> Project:
+def apply_step(project: Project, step: Step) -> Project:
     """Return a project after a step."""
     rows = list_rows(project)
     if isinstance(step, FromNames):
@@ -103,7 +103,7 @@ def describe_row(project: Project, row: ActionRow) -> str:
     return " ".join(read_cell(project, row, column) for column in SEARCHED)
 
 
-def _count(reference: Project, steps: Sequence[Step]) -> Filled:
+def _count(reference: Project, steps: Sequence[Step]) -> FilledTable:
     made, project = OperatorCounts(), strip_labels(reference)
     made.think()
     made.keys(2)  # the table
@@ -121,9 +121,9 @@ def _count(reference: Project, steps: Sequence[Step]) -> Filled:
             made.keys(2 + max(1, len(step.words)) + 1)
             made.keys(abs(SHOWN.index(step.column) - SHOWN.index(column)) + len(step.typed) + 1)
             column = step.column
-        project = carry_out(project, step)
+        project = apply_step(project, step)
     found = score(normalize_machines(project, False), normalize_machines(reference, False))
-    return Filled(tuple(steps), dict(made.counts), predict_seconds(made.counts), found)
+    return FilledTable(tuple(steps), dict(made.counts), predict_seconds(made.counts), found)
 
 
 def _find_steps(reference: Project, by_names: bool, first: str) -> list[Step] | None:
@@ -178,7 +178,7 @@ class _Search:
         project = self.project
         for pattern in patterns:
             try:
-                project = carry_out(project, FromNames(pattern))
+                project = apply_step(project, FromNames(pattern))
             except EditError:
                 return None
         names: dict[str, str] = {}
@@ -227,4 +227,4 @@ class _Search:
 
     def _take(self, step: Step) -> None:
         self.steps.append(step)
-        self.project = carry_out(self.project, step)
+        self.project = apply_step(self.project, step)

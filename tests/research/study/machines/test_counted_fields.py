@@ -9,7 +9,7 @@ import pytest
 from metagraph.research.study.machines.counted_fields import (
     FromNames,
     SetFound,
-    carry_out,
+    apply_step,
     label_by_fields,
     strip_labels,
 )
@@ -28,7 +28,7 @@ def test_the_steps_make_the_reference_and_nothing_else(shuffled: int, from_names
     project = strip_labels(ref)
     assert not list(project.actions()) and not any(g.stances for g in project.graphs.values())
     for step in found.steps:
-        project = carry_out(project, step)
+        project = apply_step(project, step)
     assert score(normalize_machines(project, False), normalize_machines(ref, False)).f1 == 1.0
 
 
