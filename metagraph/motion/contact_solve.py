@@ -31,6 +31,7 @@ REACHED = 0.995  # of an arm's length: it does not snap straight
 FOLDED = 0.906  # cosine of the least angle inside an elbow, 25 degrees
 WRIST = 0.819  # cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 SOFT = 0.006  # metres of depth over which the push out of the body sets in
+FIRM = 0.03  # metres of depth from which on a part resists what pushes towards it
 EVEN = 0.05  # how much the middle counts where lines are side by side
 STRAIGHT = (0.31, 0.52, 0.8)  # where a straight arm bends to: no side in particular, but always one
 ELBOW = 0.3  # how little a forearm is pushed near its elbow, which a wrist cannot move
@@ -350,12 +351,15 @@ def _shift(
             inner = min(1.0, gap / radii)  # nearer to the line it is not pushed all the way
             inner = inner * inner * (3.0 - 2.0 * inner)
             if first:
-                whole[side] = min(whole[side], inner)
+                whole[side] = min(whole[side], 1.0 - share * (1.0 - inner))
                 inner = 1.0
             amount = amount * share * inner
             part = _along(ends, 2 * i, 2 * k) if mine.kind == FOREARM else 1.0
             way = (x / gap, y / gap, z / gap)
-            left = amount - part * dot(way, shift)
+            pushed = part * dot(way, shift)
+            if pushed < 0.0:  # others push towards it: what hardly touches or hardly counts hardly resists
+                pushed = pushed * share * min(1.0, depth / FIRM)
+            left = amount - pushed
             if left > 0.0:
                 shift = plus(shift, scaled(way, left * part / (part * part + ELBOW * (1.0 - part))))
     return shift

@@ -9,14 +9,13 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 
-from metagraph.graph.model import LAYERS, Layer, Markov, Project
+from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.life.near_life import with_past
 from metagraph.playback.life.schedule import schedule
-from metagraph.playback.life.wanted import mode_at, moods_of
-from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Plan, Report
+from metagraph.playback.life.wanted import moods_of
+from metagraph.playback.plan import LayerPlan, MetaRequest, Plan, Report
 from metagraph.playback.planning import markov
 from metagraph.playback.planning.layer_planning import draft
-from metagraph.playback.planning.mood import Moods, mood_at, stirs
 from metagraph.playback.planning.plan_head import find_plan_head, keep_head, share_layer
 from metagraph.playback.planning.strand import join_sequence
 
@@ -90,10 +89,9 @@ def extend_plan(
         drafted = draft(
             project, graph, chain if idle else None, {kind for _, kind in graph.index},
             old if head is None else head.rest(old), told, plan.seed, now, fresh, again,
-            revision.stopped, end, stance, moods,
+            revision.stopped, end, stance, moods, plan.track,
         )  # fmt: skip
-        metas = [m for m in drafted.placed if not m.written or _performed(chain, plan, layer, m, moods)]
-        made = drafted.performed(metas, end)
+        made = drafted.performed(drafted.placed, end)
         layers[layer] = share_layer(made) if head is None else head.whole(old, made)
         reports += drafted.reports
     kept = tuple(r for r in plan.requests if r.id not in again) if again else plan.requests
@@ -107,14 +105,3 @@ def extend_plan(
     if head is not None:
         keep_head(out, head)
     return out
-
-
-def _performed(chain: Markov, plan: Plan, layer: Layer, meta: MetaAction, moods: Moods) -> bool:
-    """Return whether an action that a model wrote is performed: not if it would leave a stance that a request
-    holds, and as often as its mode and mood say.
-    """
-    if not stirs(mood_at(moods, meta.start), plan.seed, meta.request.id):
-        return False
-    if meta.request.kind == "transition" and plan.track.stays_at(layer, meta.start):
-        return False
-    return markov.performs(chain, plan.seed, meta, mode_at(plan.track, meta.start))

@@ -86,7 +86,7 @@ MUTANTS = [
     ("items.hpp", "speech->priority < last->priority", "false", "quiet: words that are said"),
     ("hearing.hpp", "bool turns = holds6;", "bool turns = false;", "sparse: modes asked for live"),
     ("meaning.hpp", "at + *inner->at", "at", "stick: lines"),
-    ("planner.hpp", "plan.track->stays_at(meta->request->layer, meta->start)", "false", "sparse: arms: to stay"),
+    ("sampling.hpp", "this->track->stays_at(this->graph->layer, now)", "false", "sparse: arms: to stay"),
 ]  # fmt: skip
 
 

@@ -52,9 +52,9 @@ MUTATIONS = [
         "models that do not repeat themselves",
     ),
     (
-        "Planner.cs",
-        "bool leaves = meta.Request.Kind",
-        "bool leaves = meta.Part > 99 && meta.Request.Kind",
+        "Sampling.cs",
+        'if (meta.Request.Kind == "transition" && Track.StaysAt(Graph.Layer, now))',
+        "if (meta.Part > 99 && Track.StaysAt(Graph.Layer, now))",
         "staying in a stance",
     ),
     ("Markov.cs", "return share >= 1 ||", "return share >= 0 ||", "modes of the models"),

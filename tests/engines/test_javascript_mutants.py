@@ -160,9 +160,9 @@ MUTATIONS = [
         "the window of a stroke",
     ),
     (
-        "planner.js",
-        "const leaves = (m) =>",
-        "const leaves = (m) => false &&",
+        "sampling.js",
+        'if (meta.request.kind === "transition" && this.track.staysAt(this.graph.layer, now)) {',
+        "if (false) {",
         "staying in a stance",
     ),
     (

@@ -17,7 +17,7 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import SpinBox
 from metagraph.graph import edits
 from metagraph.graph.model import Action, Project, Settings
-from metagraph.playback.planning.director import repeat_interval
+from metagraph.playback.planning.director import beat_interval, repeat_interval
 from metagraph.playback.planning.prominence import measure_prominence
 from metagraph.playback.timing.phases import find_phases
 
@@ -123,7 +123,14 @@ class ActionRows(QWidget):
         shares = [measure_prominence(project, a) for a in actions]
         self.prominence.show_value(find_common_value([100 * share for share in shares]))
         variety = project.settings.variety
-        soonest = min(repeat_interval(a.kind, x) for a, x in zip(actions, shares, strict=True)) * variety
+        gestures = {
+            layer: sum(a.kind == "gesture" for a in project.graphs[layer].actions.values())
+            for layer in {a.layer for a in actions}
+        }
+        soonest = variety * min(
+            repeat_interval(a.kind, x, beat_interval(a.layer, gestures[a.layer]))
+            for a, x in zip(actions, shares, strict=True)
+        )
         self.prominence.setToolTip(
             tr(
                 "How much viewers notice it. The more it stands out, the longer the character waits before "

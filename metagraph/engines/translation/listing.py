@@ -89,7 +89,9 @@ LISTING = (
     Translated("metagraph.playback.life.streamed_voice", "streamed_voice"),
     Translated("metagraph.playback.life.lane", "lane", ("Lane",), without=("Lane.starts", "Lane.values")),
     Translated("metagraph.playback.life.items", "items"),
-    Translated("metagraph.playback.life.track", "track", ("Track",), without=("Track.items", "Track.plus")),
+    Translated(
+        "metagraph.playback.life.track", "track", ("HUSHED", "Track"), without=("Track.items", "Track.plus")
+    ),
     Translated("metagraph.playback.life.utterances", "utterances"),
     Translated("metagraph.playback.life.speech_watch", "speech_watch"),
     Translated("metagraph.playback.life.wanted", "wanted"),

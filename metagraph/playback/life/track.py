@@ -43,6 +43,8 @@ __all__ = [
     "track_of",
 ]
 
+HUSHED = 1.5  # seconds after what was said is broken off in which the models begin nothing
+
 
 @dataclass(frozen=True)
 class Track:
@@ -77,6 +79,17 @@ class Track:
         """Return whether the models may not change a layer's stance at a time."""
         last = next((s for s in reversed(self.stays) if s.layer == layer and s.start <= seconds), None)
         return last is not None and last.on and seconds < last.end
+
+    def hushed_at(self, seconds: float) -> bool:
+        """Return whether what was said was broken off shortly before a time, and nothing is said since: then
+        the models begin nothing.
+        """
+        place = bisect_right(self.speeches, seconds, key=lambda s: s.start) - 1
+        if place < 0 or self.speeches[place].length is None:
+            return False
+        last = self.speeches[place]
+        silent = last.end if last.over is None else max(last.end, last.over)
+        return last.end <= seconds and seconds < silent + HUSHED
 
     def told_mode(self, seconds: float) -> Mode | None:
         """Return the mode requested at a time, or talking while something is said; None if
@@ -170,7 +183,8 @@ class Track:
             tuple([  # of an utterance that is not over all pieces
                 x for x in self.speeches
                 if x.start > seconds or x.end > seconds or (x.more and x.id in lasts)
-                or (x.over is not None and x.over > seconds)
+                or (x.over is not None and x.over > seconds - HUSHED)
+                or (x.length is not None and x.end > seconds - HUSHED)
             ]),
             tuple(self.modes[mode:]),
             tuple([x for n, x in enumerate(self.places) if x.start > seconds or places[x.name] == n]),

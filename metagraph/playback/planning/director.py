@@ -10,27 +10,52 @@ of it off, as in Borer et al. The times are ours, chosen by what an hour of the 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 
-from metagraph.graph.model import Kind, Layer
+from metagraph.graph.model import Kind, Layer, Stance
 
 STANDS_OUT = 0.65  # prominence from which on an act is one that a viewer remembers
 APART = 30.0  # seconds between two of those on one layer
 LONG_REST = 30.0  # seconds of rest after which actions need to have rested only `SHORTER` as long
 SHORTER = 0.3
+LEAST_BEATS = 18.0  # seconds after which a gesture that hardly shows is done again, at least
+MOST_BEATS = 180.0  # and at most
+EACH = 7.0  # seconds of those for each gesture of the arms that the character has
 STALE = 0.05  # least factor of the likelihood of what has just been played
 LEAVES_HOME = 0.2  # share of the written tilts of the head that leave the stance it begins in
 GOES_HOME = 0.7  # share of the written moves of a tilted head that go back there
+MUSES = 2.0  # seconds that a thought goes on at least for which a hand goes to the chin
+MUSED = 10.0  # seconds after a thought in which anything that is written takes the hand away again
+THOUGHTFUL: Sequence[str] = ("chin", "thinking", "pondering", "musing")  # words of such a stance's name
 
 
-def repeat_interval(kind: Kind, prominence: float) -> float:
+def musing(stances: Mapping[str, Stance]) -> str:
+    """Return the first stance of the arms whose name says that one thinks in it; "" for none."""
+    for ident, stance in stances.items():
+        for word in stance.name.lower().split():
+            if word in THOUGHTFUL or word.rpartition("_")[2] in THOUGHTFUL:
+                return ident
+    return ""
+
+
+def beat_interval(layer: Layer, gestures: int) -> float:
+    """Return after how many seconds a gesture that hardly shows may be done again: with many gestures of the
+    arms, not for minutes; with few, soon. gestures: how many the layer has.
+    """
+    if layer != "arms":
+        return LEAST_BEATS
+    return min(MOST_BEATS, max(LEAST_BEATS, EACH * gestures))
+
+
+def repeat_interval(kind: Kind, prominence: float, beats: float) -> float:
     """Return after how many seconds an action may be done again.
 
-    That is 18 s for a beat that hardly shows, six minutes for a gesture that stands out, and 4 to 10 minutes
-    for fidgets, which only time calls for. prominence: 0..1.
+    That is from `beats` (`beat_interval`) to six minutes for gestures, the longer the more they stand out,
+    and 5 to 10 minutes for fidgets, which only time calls for. prominence: 0..1.
     """
     if kind == "gesture":
-        return 18.0 * math.exp(math.log(20.0) * prominence)
-    return 240.0 * math.exp(math.log(2.5) * prominence)
+        return beats * math.exp(math.log(360.0 / beats) * prominence)
+    return 300.0 * math.exp(math.log(2.0) * prominence)
 
 
 def posture(layer: Layer) -> float:

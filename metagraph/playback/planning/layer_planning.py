@@ -9,6 +9,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 
 from metagraph.graph.model import Kind, Layer, Markov, MetaGraph, Project
+from metagraph.playback.life.track import Track
 from metagraph.playback.plan import (
     TEMPORAL,
     Cue,
@@ -80,13 +81,14 @@ def draft(
     end: float,
     stance: str | None,
     moods: Moods,
+    track: Track,
 ) -> LayerDraft:
     """Return a layer's plan cut at `now`, with the requests placed again.
 
     chain: the model that writes when there are no requests, or None. kinds: the kinds of actions that the
     layer has. told: reports of the plan so far. fresh: new requests, of all layers. replaced: ids of requests
     that are replaced or withdrawn; stopped: those withdrawn, whose running action is left. stance: the stance
-    in which the layer would begin. moods: the mood over time.
+    in which the layer would begin. moods: the mood over time. track: what lasts, such as the mode.
     """
     layer = graph.layer
     asked = [meta_of(in_time(request, moods)) for request in fresh if request.layer == layer]
@@ -136,7 +138,8 @@ def draft(
         )
     ]
     begin = _begin(graph, old, stance)
-    performer = performer_after(project, graph, seed, begin, old.past, kept, moods)
+    performer = performer_after(project, graph, seed, begin, old.past, kept, moods, track)
+    performer.model = chain
     if begin == "" or not performer.begin(begin):
         why = f"the {layer} layer has no stance with a loop to begin in"
         waits = [*future, *asked]
@@ -147,7 +150,8 @@ def draft(
     performer.begun = {cue.meta for cue in kept if cue.meta in waiting}
     if len(kept) > 0 and kept[-1].end > now:
         running = next((meta for meta in old.metas if meta.key == kept[-1].meta), None)
-        performer.make_way(running, asked, now, running is not None and running.request.id in stopped)
+        leaves = _leaves(running, stopped, track, now)
+        performer.make_way(running, asked, now, leaves)
     if len(old.rests) > 0 and now > 0:
         begun = {cue.end - cue.blend_out for cue in performer.cues}
         performer.rests = [rest for rest in old.rests if rest.fade_start < now or rest.start in begun]
@@ -160,6 +164,16 @@ def draft(
     placed, moved = replan([*future, *written, *asked], project.settings, busy)
     every = [*reports, *delayed, *moved]
     return LayerDraft(layer, performer, True, done, placed, every, old.past, cursor, written)
+
+
+def _leaves(running: MetaAction | None, stopped: AbstractSet[str], track: Track, now: float) -> bool:
+    """Return whether the running action is left: it was stopped, or it is a gesture of the character's own
+    and what it said was broken off.
+    """
+    if running is None:
+        return False
+    own = running.written and running.request.kind == "gesture"
+    return running.request.id in stopped or (own and track.hushed_at(now))
 
 
 def in_time(request: MetaRequest, moods: Moods) -> MetaRequest:

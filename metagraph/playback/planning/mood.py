@@ -261,9 +261,7 @@ def extent(mood: Mood) -> float:
 
 def tempo(mood: Mood) -> float:
     """Return how fast actions are played: a factor of their own speed."""
-    pace = liveliness(mood)
-    by_mood = 1 + 0.25 * pace if pace > 0 else 1 + 0.3 * pace
-    return within(by_mood, LEAST_TEMPO, MOST_TEMPO)
+    return within(1 + 0.25 * liveliness(mood), LEAST_TEMPO, MOST_TEMPO)
 
 
 def drag(seconds: float, speed: float) -> float:
@@ -346,14 +344,14 @@ def bearing(mood: Mood) -> Bearing:
     return Bearing(
         within(i * (-0.7 * v - 0.5 * a), -0.4, 1.0),
         within(i * (2.0 * up * (1 - well) + 4.5 * scared - 1.5 * down - ill * (1 - up)), -2.0, 6.0),
-        within(i * (0.5 * down - 0.5 * scared - 0.15 * cross), -0.6, 0.5),
+        within(i * (0.5 * down - 0.5 * scared - 0.15 * cross - 1.1 * up * well), -0.6, 0.5),
         within(i * well * (1.2 + 0.3 * up - 0.6 * down), 0.0, 1.0),
         within(i * (1.4 * ill * (1 - up) * (1 - 0.6 * down) + 0.35 * cross + 0.4 * scared), 0.0, 1.0),
         within(i * (0.5 * up * max(0.0, 0.4 - v) + 0.8 * cross) * (1 - scared), 0.0, 1.0),
         within(i * (2.0 * ill * (1 - up) * (1 - down) + 0.9 * scared), 0.0, 1.0),
         within(i * (0.3 * up * max(0.0, 0.3 - v) + 0.9 * cross - 0.7 * scared), -1.0, 1.0),
         within(i * 1.2 * up * max(0.0, 1.0 - 2.0 * well) * (1 - 0.8 * scared), 0.0, 1.0),
-        within(i * (0.6 * scared + 0.3 * up * well), 0.0, 1.0),
+        within(i * (0.6 * scared + 1.6 * up * well), 0.0, 1.0),
         within(i * (0.5 * scared + 0.4 * ill * (1 - up)), 0.0, 1.0),
     )
 

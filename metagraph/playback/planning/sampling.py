@@ -8,8 +8,10 @@ from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field, replace
 
-from metagraph.graph.model import Action, MetaGraph, Project
+from metagraph.graph.model import Action, Markov, MetaGraph, Project
 from metagraph.graph.repeating import cycle_of
+from metagraph.playback.life.track import Track
+from metagraph.playback.life.wanted import mode_at
 from metagraph.playback.plan import Cue, MetaAction, MetaRequest, Outcome, Past, Report, Rest
 from metagraph.playback.planning.bounds import Bound, begins, bounds
 from metagraph.playback.planning.choice import pick, uniform
@@ -30,15 +32,21 @@ from metagraph.playback.planning.cue_shapes import (
 from metagraph.playback.planning.director import (
     APART,
     GOES_HOME,
+    LEAST_BEATS,
     LEAVES_HOME,
     LONG_REST,
+    MUSED,
+    MUSES,
     SHORTER,
     STANDS_OUT,
+    beat_interval,
     freshness,
+    musing,
     posture,
     repeat_interval,
 )
 from metagraph.playback.planning.hashing import Bits
+from metagraph.playback.planning.markov import performs
 from metagraph.playback.planning.mood import (
     HELD,
     Mood,
@@ -49,6 +57,7 @@ from metagraph.playback.planning.mood import (
     favour,
     made_for,
     mood_at,
+    stirs,
     tempo,
 )
 from metagraph.playback.planning.prominence import measure_prominence
@@ -78,7 +87,9 @@ class Performer:
     uses: how often each action was used. recent: the last draws of each `node`. ended: when each action
     ended. begun: keys of meta actions whose chain of transitions already plays. served: keys of those that
     the action of another one serves, too. moods: the mood over time. candidates: the actions of each `node`
-    that may be drawn, for the nodes needed so far. acted: when the last action ended.
+    that may be drawn, for the nodes needed so far. acted: when the last action ended. track: what lasts.
+    model: the one that wrote what was not requested, None if there is none.
+    beats: seconds after which a gesture that hardly shows may be done again.
     """
 
     project: Project
@@ -86,6 +97,7 @@ class Performer:
     seed: Bits
     stance: str
     moods: Moods
+    track: Track
     free: float = 0.0
     acted: float = 0.0
     uses: dict[str, int] = field(default_factory=dict)
@@ -97,6 +109,8 @@ class Performer:
     begun: AbstractSet[str] = frozenset()
     served: set[str] = field(default_factory=set)
     candidates: dict[str, list[Action]] = field(default_factory=dict)
+    model: Markov | None = None
+    beats: float = LEAST_BEATS
 
     def note(self, cue: Cue, then: str) -> None:
         """Note that a cue is played."""
@@ -119,7 +133,8 @@ class Performer:
 
     def perform(self, metas: Sequence[MetaAction], end: float) -> None:
         """Realise in order those meta actions of a conflict-free meta plan that start before `end`."""
-        for bound in bounds(metas):
+        performed = [m for m in metas if not m.written or self._performs(m, m.start)]
+        for bound in bounds(performed):
             meta = bound.meta
             if begins(meta) >= end:
                 continue
@@ -150,6 +165,8 @@ class Performer:
     def _realise(self, bound: Bound, now: float) -> None:
         meta = bound.meta
         limit = bound.limit
+        if meta.written and meta.key not in self.begun and not self._may_begin(meta, now):
+            return
         steps = self._steps(meta, now)
         if steps is None:
             return
@@ -195,6 +212,66 @@ class Performer:
             now, stance = cue.end, cue.then
         for one in cues:
             self._keep(one)
+
+    def _performs(self, meta: MetaAction, now: float) -> bool:
+        """Return whether what a model wrote is performed at a time: not out of a stance that a request holds,
+        and as often as mode and mood say. Anything may begin a long thought, or end it.
+        """
+        if not stirs(mood_at(self.moods, now), self.seed, meta.request.id):
+            return False
+        if meta.request.kind == "transition" and self.track.stays_at(self.graph.layer, now):
+            return False
+        if self.model is None or self._muses(now) or self._has_mused(now):
+            return True
+        return performs(self.model, self.seed, meta, mode_at(self.track, now))
+
+    def _may_begin(self, meta: MetaAction, now: float) -> bool:
+        """Return whether what a model wrote begins at a time, which may be later than it was written for: not
+        soon after an interruption, and nothing that would end a thought.
+        """
+        if self.track.hushed_at(now) or not self._performs(meta, now):
+            return False
+        if self.model is None or self._leads(now) != "":
+            return True
+        there = self.stance == musing(self.graph.stances)
+        if there and meta.request.kind == "transition" and self._muses(now):
+            return False
+        return performs(self.model, self.seed, meta, mode_at(self.track, now))
+
+    def _muses(self, now: float) -> bool:
+        """Return whether the arms take or keep the stance in which the character thinks."""
+        if mode_at(self.track, now) != "thinking" or mode_at(self.track, now + MUSES) != "thinking":
+            return False
+        if self.graph.layer != "arms" or self.project.settings.variety <= 0:
+            return False
+        return not self.track.stays_at("arms", now) and musing(self.graph.stances) != ""
+
+    def _has_mused(self, now: float) -> bool:
+        """Return whether a thought of the character has ended just now."""
+        if self.graph.layer != "arms" or mode_at(self.track, now) == "thinking":
+            return False
+        return self.project.settings.variety > 0 and mode_at(self.track, now - MUSED) == "thinking"
+
+    def _leads(self, now: float) -> str:
+        """Return the stance that the arms go to whatever a model wrote: the one in which the character
+        thinks, and from there home as soon as the thought is over; "" for none.
+        """
+        if self.graph.layer != "arms" or self.project.settings.variety <= 0:
+            return ""
+        muses = musing(self.graph.stances)
+        if muses == "" or self.track.stays_at("arms", now):
+            return ""
+        home = self.graph.start
+        goal = ""
+        if self._muses(now):
+            goal = muses
+        elif self.stance == muses and home is not None and mode_at(self.track, now) != "thinking":
+            came = self._moved()
+            if came >= 0 and mode_at(self.track, came) == "thinking":
+                goal = home
+        if goal == self.stance or goal == "" or len(self._chain(goal)) == 0:
+            return ""
+        return goal
 
     def _timely(self, bound: Bound, fitting: Sequence[Action], now: float) -> list[Action]:
         """Return the candidates that come least late, if that is not too late; among them those that leave
@@ -375,6 +452,9 @@ class Performer:
                 )
                 return None
             return self._way(meta, request.stance)
+        leads = self._leads(now) if meta.written else ""
+        if leads != "":
+            return self._way(meta, leads)
         here = node(self.stance, request.kind)
         if here not in self.candidates:
             self.candidates[here] = [a for a in graph.of(self.stance, request.kind) if self._usable(a)]
@@ -393,7 +473,8 @@ class Performer:
             found = [a for a in found if a in every]
             exact = [a for a in exact if a in every]
             if len(every) == 0:
-                return None
+                moves = self._moves_on(meta, now)
+                return [SamplingStep(moves)] if len(moves) > 0 else None
             if len(exact) == 0:
                 exact = found if len(found) > 0 else every
         elif meta.written:  # nor worth playing the same again
@@ -532,9 +613,15 @@ class Performer:
     def _variety(self, action: Action, now: float) -> float:
         """Return the factor by which variety changes an action's likelihood."""
         variety = self.project.settings.variety
-        if variety <= 0 or action.kind == "transition" or action.id not in self.ended:
+        if variety <= 0:
             return 1.0
-        needed = repeat_interval(action.kind, measure_prominence(self.project, action)) * variety
+        if action.kind == "transition":
+            talks = self.graph.layer == "arms" and mode_at(self.track, now) == "talking"
+            return 1.0 + self._count_fresh(action.end_stance, now) if talks else 1.0
+        if action.id not in self.ended:
+            return 1.0
+        shows = measure_prominence(self.project, action)
+        needed = repeat_interval(action.kind, shows, self.beats) * variety
         return freshness(now - self.ended[action.id], needed)
 
     def _fresh(self, meta: MetaAction, candidates: Sequence[Action], now: float) -> list[Action]:
@@ -559,10 +646,37 @@ class Performer:
             shows = measure_prominence(self.project, action)
             if reminded and shows >= STANDS_OUT:
                 continue
-            needed = repeat_interval(action.kind, shows) * share
+            needed = repeat_interval(action.kind, shows, self.beats) * share
             if action.id not in self.ended or now >= self.ended[action.id] + needed:
                 out.append(action)
         return out
+
+    def _moves_on(self, meta: MetaAction, now: float) -> list[Action]:
+        """Return the transitions of the arms that may play for a gesture where all gestures of the stance
+        have played too recently, and others of another stance have not.
+        """
+        out: list[Action] = []
+        if self.graph.layer != "arms" or meta.request.kind != "gesture" or self.track.stays_at("arms", now):
+            return out
+        if now < self._moved() + posture("arms") * self.project.settings.variety:
+            return out
+        for action in self.graph.of(self.stance, "transition"):
+            if self._usable(action) and self._count_fresh(action.end_stance, now) > 0:
+                out.append(action)
+        return out
+
+    def _count_fresh(self, stance: str | None, now: float) -> int:
+        """Return how many gestures of a stance have not played for long enough."""
+        count = 0
+        if stance is None:
+            return count
+        variety = self.project.settings.variety
+        for action in self.graph.of(stance, "gesture"):
+            shows = measure_prominence(self.project, action)
+            needed = repeat_interval("gesture", shows, self.beats) * variety
+            if action.id not in self.ended or now >= self.ended[action.id] + needed:
+                count += 1
+        return count
 
     def _moved(self) -> float:
         """Return when the stance was last changed; minus infinity for never."""
@@ -707,14 +821,22 @@ class Performer:
 
 
 def performer_after(
-    project: Project, graph: MetaGraph, seed: Bits, begin: str, past: Past, cues: Sequence[Cue], moods: Moods
+    project: Project,
+    graph: MetaGraph,
+    seed: Bits,
+    begin: str,
+    past: Past,
+    cues: Sequence[Cue],
+    moods: Moods,
+    track: Track,
 ) -> Performer:
     """Return the performer as it is after a past and the cues that played since."""
     stance = past.stance if past.stance in graph.stances else begin
     out = Performer(
-        project, graph, seed, stance, moods, past.free, past.free,
+        project, graph, seed, stance, moods, track, past.free, past.free,
         dict(past.uses), dict(past.recent), dict(past.ended),
     )  # fmt: skip
+    out.beats = beat_interval(graph.layer, len([a for a in graph.actions.values() if a.kind == "gesture"]))
     for cue in cues:
         out.note(cue, cue.then if cue.then in graph.stances else begin)
     return out

@@ -330,7 +330,7 @@ class Life:
                 turn = ij[side][0] * np.array(eye["turn_left"]) + ij[side][1] * np.array(eye["turn_up"])
                 rotations[joint] = times(rotations[joint], about(turn))
         face, blink = self.rig["face"], self.blink(t)
-        lids = clamp(i * (0.5 * down_ - 0.5 * fear - 0.15 * anger), -0.6, 0.5)
+        lids = clamp(i * (0.5 * down_ - 0.5 * fear - 0.15 * anger - 1.1 * up * well), -0.6, 0.5)
         blink = max(blink, lids) if lids > 0.0 else blink + lids * (1.0 - blink)
         any_lid = max(face["lid_joints"]) >= 0
         follows = face["follows"] if any_lid else [0.6 / radians(40.0)] * 2 + [0.0, 0.0]
@@ -352,7 +352,7 @@ class Life:
             "frown": i * (1.4 * ill * (1.0 - up) * (1.0 - 0.6 * down_) + 0.35 * anger + 0.4 * fear),
             "brow_down": i * (0.5 * up * max(0.0, 0.4 - v) + 0.8 * anger) * (1.0 - fear),
             "brow_up": i * (2.0 * ill * (1.0 - up) * (1.0 - down_) + 0.9 * fear),
-            "brows": i * (0.6 * fear + 0.3 * up * well),
+            "brows": i * (0.6 * fear + 1.6 * up * well),
         }
         named = self.face(t, {name: clamp(value, 0.0, 1.0) for name, value in feels.items()})
         named |= dict(zip(CHANNELS, values, strict=True)) | {"blink": max(blink, (shut[0] + shut[1]) / 2.0)}

@@ -283,7 +283,9 @@ class Sampler:
     def time(self, action: dict[str, Any]) -> float:
         """ "Variety": after how long it may be done again."""
         p, variety = action.get("prominence", 0.0), self.planner["variety"]
-        return float(variety * (18.0 * 20.0**p if action["kind"] == "gesture" else 240.0 * 2.5**p))
+        gestures = sum(a["kind"] == "gesture" for a in self.graph["actions"])
+        b = min(180.0, max(18.0, 7.0 * gestures)) if self.layer == "arms" else 18.0
+        return float(variety * (b * (360.0 / b) ** p if action["kind"] == "gesture" else 300.0 * 2.0**p))
 
     def rested(self, meta: Meta, every: list[dict[str, Any]], now: float) -> list[dict[str, Any]]:
         """ "Variety": what the model may do."""
@@ -315,6 +317,19 @@ class Sampler:
             and not (shown and a.get("prominence", 0.0) >= 0.65)
         ]
 
+    def moves_on(self, meta: Meta, now: float) -> list[dict[str, Any]]:
+        """ "Variety": what plays for a gesture if none is rested."""
+        moves = [c["end"] for c in self.cues if self.actions[c["action"]]["kind"] == "transition"]
+        kept = now < max(moves, default=-inf) + 10.0 * self.planner["variety"]
+        if self.layer != "arms" or meta.kind != "gesture" or kept:
+            return []
+
+        def has_rested(stance: str) -> bool:
+            gestures = [self.actions[i] for i in self.graph["index"].get(stance, {}).get("gesture", [])]
+            return any(now >= self.ended(a["id"]) + self.time(a) for a in gestures)
+
+        return [a for a in self.of(self.stance, "transition") if has_rested(a["end_stance"])]
+
     def steps(self, meta: Meta, now: float) -> list[tuple[str, list[dict[str, Any]]]] | None:
         """ "Candidates": each hop with the stance it leads to, then the action itself."""
         if meta.action is not None:
@@ -333,7 +348,7 @@ class Sampler:
         if meta.rank == WRITTEN and self.planner["variety"] > 0.0:
             rested = self.rested(meta, every, now)
             wider = ([a for a in some if a in rested] for some in (exact, found, every))
-            exact, found = next((some for some in wider if some), []), []
+            exact, found = next((some for some in wider if some), self.moves_on(meta, now)), []
         elif meta.rank == WRITTEN:
             last = self.drawn(self.stance, meta.kind)[-1:]
             wider = (exact, found, every)

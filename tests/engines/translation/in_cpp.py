@@ -121,7 +121,8 @@ int main(int, char**) {{
             project, graph, chain(), kinds, plan, reports, {LAYER_SEED}, now,
             lang::part(every, first, last), gone, gone, end, std::nullopt,
             made<Moods>(made<Mood>(), List<Ref<MoodFrom>>{{made<MoodFrom>("sad", 600.0, -0.7, -0.4),
-                made<MoodFrom>("loud", 2400.0, 0.5, 0.9, 1.5)}}));
+                made<MoodFrom>("loud", 2400.0, 0.5, 0.9, 1.5)}}),
+            made<Track>());
         plan = drafted->performed(drafted->placed, end);
         reports = drafted->reports;
     }};

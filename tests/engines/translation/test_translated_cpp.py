@@ -10,6 +10,7 @@ from metagraph.graph.model import Project, Settings
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import read_aloud, spelled
 from metagraph.playback.life.mouth import accents_of, mouth_track
+from metagraph.playback.life.track import Track
 from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Report
 from metagraph.playback.planning import layer_planning, markov, replan
 from metagraph.playback.planning.choice import key32
@@ -92,6 +93,7 @@ def test_in_cpp_a_layer_plays_what_it_plays_in_python(sample: Project, cpp_probe
             end,
             None,
             MOODS,
+            Track(),
         )
         plan = drafted.performed(drafted.placed, end)
         reports = drafted.reports

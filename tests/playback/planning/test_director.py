@@ -9,6 +9,8 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.requests import make_request
+from metagraph.playback.life.track import HUSHED
 from metagraph.playback.plan import Cue, MetaRequest
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.director import (
@@ -18,12 +20,13 @@ from metagraph.playback.planning.director import (
     SHORTER,
     STALE,
     STANDS_OUT,
+    beat_interval,
     freshness,
     posture,
     repeat_interval,
 )
 from metagraph.playback.planning.prominence import measure_prominence
-from metagraph.playback.planning.running_plan import improvise
+from metagraph.playback.planning.running_plan import RunningPlan, improvise, plan_performance
 
 LENGTH = 900.0
 
@@ -33,9 +36,16 @@ def cues(project: Project, layer: Any, mode: Any, seed: int = 2) -> tuple[Cue, .
 
 
 def test_a_beat_comes_again_in_seconds_and_what_stands_out_in_minutes() -> None:
-    assert repeat_interval("gesture", 0.0) == 18 and repeat_interval("gesture", 1.0) == pytest.approx(360)
-    assert repeat_interval("fidget", 0.0) == 240 and repeat_interval("fidget", 1.0) == pytest.approx(600)
-    assert repeat_interval("gesture", 0.3) < 60 < 150 < repeat_interval("gesture", 0.75)
+    assert repeat_interval("gesture", 0.0, 18.0) == 18
+    assert repeat_interval("gesture", 1.0, 18.0) == pytest.approx(360) == repeat_interval("gesture", 1.0, 180)
+    assert repeat_interval("fidget", 0.0, 18.0) == 300
+    assert repeat_interval("fidget", 1.0, 18.0) == pytest.approx(600)
+    assert repeat_interval("gesture", 0.3, 18.0) < 60 < 150 < repeat_interval("gesture", 0.75, 18.0)
+
+
+def test_the_more_gestures_the_arms_have_the_later_a_beat_comes_again() -> None:
+    assert beat_interval("arms", 0) == beat_interval("arms", 2) == beat_interval("head", 50) == 18.0
+    assert beat_interval("arms", 10) == 70.0 and beat_interval("arms", 50) == 180.0
 
 
 def test_what_has_just_been_played_is_hardly_likely_and_what_is_rested_is_as_likely_as_ever() -> None:
@@ -46,11 +56,14 @@ def test_what_has_just_been_played_is_hardly_likely_and_what_is_rested_is_as_lik
 @pytest.mark.parametrize("mode", ["talking", "listening", "idle"])
 def test_nothing_written_comes_again_before_its_time(sample: Project, mode: Any) -> None:
     for layer in LAYERS:
+        actions = sample.graphs[layer].actions.values()
+        beats = beat_interval(layer, sum(a.kind == "gesture" for a in actions))
         last: dict[str, float] = {}
         free = 0.0
         for cue in cues(sample, layer, mode):
             if cue.action.kind != "transition":
-                needed = repeat_interval(cue.action.kind, measure_prominence(sample, cue.action))
+                shows = measure_prominence(sample, cue.action)
+                needed = repeat_interval(cue.action.kind, shows, beats)
                 needed *= 1.0 if cue.start < free + LONG_REST else SHORTER
                 assert cue.start >= last.get(cue.action.id, -1e9) + needed - 1e-6
                 last[cue.action.id] = cue.end
@@ -110,3 +123,74 @@ def test_one_certain_action_plays_as_often_as_it_is_asked_for(sample: Project) -
     asked = [MetaRequest(f"r{n}", "arms", "gesture", 6.0 * n, action=wave.id) for n in range(5)]
     plan = make_plan(sample, 40.0, asked, idle=False)
     assert [c.action.id for c in plan.layers["arms"].cues] == [wave.id] * 5
+
+
+CHIN = "hand to chin"
+TEXT = "this is a long sentence about nothing that somebody says slowly and on and on until the end of it "
+
+
+def mode(name: str | None, at: float) -> Any:
+    return make_request({"do": "mode", "mode": name, "id": f"mode{at}", "at": at})
+
+
+def chin_moves(project: Project, asks: list[Any], end: float, seed: int) -> list[tuple[float, bool]]:
+    """When the arms go to the chin (True) or leave it."""
+    names = {ident: stance.name for ident, stance in project.graphs["arms"].stances.items()}
+    plan = plan_performance(project, asks, end, seed)
+    moves = [c for c in plan.layers["arms"].cues if CHIN in (names[c.stance], names[c.then])]
+    return [(c.start, names[c.then] == CHIN) for c in moves if c.action.kind == "transition"]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_long_thought_brings_a_hand_to_the_chin_and_its_end_takes_it_away(
+    sample: Project, seed: int
+) -> None:
+    asks = [mode("listening", 0.0), mode("thinking", 1.0), mode("talking", 25.0)]
+    moves = chin_moves(sample, asks, 40.0, seed)
+    assert [there for _, there in moves[:2]] == [True, False], "it goes there, stays, and goes away"
+    assert 1.0 <= moves[0][0] < 12.0 and 25.0 <= moves[1][0] < 35.0
+
+
+def test_a_short_thought_brings_no_hand_to_the_chin(sample: Project) -> None:
+    for seed in range(6):
+        asks = [mode("reacting", 0.0), *(mode(m, t) for t in (5.0, 15.0) for m, t in
+                (("thinking", t), ("reacting", t + 1.5)))]  # fmt: skip
+        assert not any(5.0 <= t < 6.5 or 15.0 <= t < 16.5 for t, _ in chin_moves(sample, asks, 20.0, seed))
+
+
+def test_a_hand_stays_where_a_request_keeps_it_in_thought(sample: Project) -> None:
+    stance = next(i for i, s in sample.graphs["arms"].stances.items() if s.name == "on hips")
+    held = make_request({"do": "stance", "stance": stance, "stay": True, "id": "held", "at": 0.0})
+    assert chin_moves(sample, [held, mode("thinking", 5.0)], 40.0, 3) == []
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_nothing_of_its_own_begins_soon_after_an_interruption(sample: Project, seed: int) -> None:
+    """Also not what was written for before, and had to wait."""
+    running = RunningPlan(sample, seed)
+    begun = 0
+    for n in range(8):
+        at = 20.0 * n + 2.0
+        running.reach(at)
+        said = make_request({"do": "say", "text": TEXT * 4, "id": f"say{n}", "at": at})
+        running.hear(at, [said])
+        cut = at + 5.0 + 0.7 * n
+        running.reach(cut)
+        running.hear(cut, [make_request({"do": "interrupt", "id": f"cut{n}"})])
+        running.hear(cut + 0.02, [mode("listening", cut + 0.1)])
+        running.reach(cut + 5.0)
+        for layer in LAYERS:
+            own = [c for c in running.plan.layers[layer].cues if c.meta.startswith("auto/")]
+            assert not [c for c in own if cut + 0.1 <= c.start < cut + HUSHED - 0.05]
+            begun += sum(cut + HUSHED <= c.start < cut + 10.0 for c in own)
+            gestures = [c for c in own if c.action.kind == "gesture" and c.start < cut]
+            assert all(c.end <= cut + 0.6 for c in gestures), "and what it does is left"
+    assert begun > 10, "later it does"
+
+
+def test_while_it_talks_the_arms_go_where_gestures_are_rested(sample: Project) -> None:
+    graph = sample.graphs["arms"]
+    rich = next(i for i, s in graph.stances.items() if s.name == "hands at sides")
+    moves = [c for seed in range(4) for c in cues(sample, "arms", "talking", seed) if c.then != c.stance]
+    chances = [c for c in moves if any(a.end_stance == rich for a in graph.of(c.stance, "transition"))]
+    assert sum(c.then == rich for c in chances) > 0.35 * len(chances), "it has half of all gestures"

@@ -13,6 +13,7 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.model import Project
+from metagraph.playback.life.track import Track
 from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning import sampling as pick_module
@@ -364,7 +365,9 @@ def test_what_the_model_writes_takes_what_there_is(toy: Any) -> None:
     request = MetaRequest(
         "auto/arms/0", "arms", "gesture", 0.0, 1.0, limb="left", tags=("positive",), priority=0
     )
-    performer = pick_module.Performer(project, project.graphs["arms"], 1, toy.id(project, "rest"), Moods())
+    performer = pick_module.Performer(
+        project, project.graphs["arms"], 1, toy.id(project, "rest"), Moods(), Track()
+    )
     performer.perform([MetaAction(request, 0, 1, written=True)], 10)
     assert [c.action.name for c in performer.cues] == ["rest short"], "the tag weighs more than the limb"
     performer.perform([MetaAction(request, 5, 6, written=True)], 10)

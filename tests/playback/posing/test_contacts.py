@@ -14,11 +14,14 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Project
+from metagraph.graph.requests import make_request
 from metagraph.motion import rotation
 from metagraph.motion.contact_solve import ContactPose, apart, capsule_ends, solve_contacts, spread
 from metagraph.motion.skeleton import Pose
+from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
+from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.playback.posing.contacts import (
     find_hand_goals,
     find_inside,
@@ -152,3 +155,32 @@ def _one(rig: Any, pose: Pose, n: int) -> ContactPose:
     )
     spread(rig, out)
     return out
+
+
+def test_clasped_hands_do_not_tremble_in_a_bowed_body() -> None:
+    """Sadness brings them into the hips while one holds the other: they are pushed out as steadily as the
+    clips move them.
+    """
+    project = sample()
+    skeleton, arms = project.skeleton, project.graphs["arms"]
+    assert skeleton is not None
+    clasped = next(i for i, s in arms.stances.items() if s.name == "hands clasped")
+    gestures = arms.of(clasped, "gesture")
+    asks: list[dict[str, Any]] = [
+        {"do": "mood", "mood": "sad", "id": "mood", "at": 0.0},
+        {"do": "stance", "stance": clasped, "stay": True, "id": "stay", "at": 0.0},
+        *({"do": "action", "action": g.id, "id": g.id, "at": 6.0 * n + 5.0} for n, g in enumerate(gestures)),
+    ]
+    end = 6.0 * len(gestures) + 5.0
+    made = plan_performance(project, [make_request(x) for x in asks], end, 1, idle=False)
+    assert len(made.layers["arms"].cues) == len(gestures) + 1
+    times = np.arange(3.0, end, 1 / 60)
+    poses = dict(Evaluator(made, project).stages(times))
+    hands = [skeleton.index(f"{side}Hand") for side in ("Left", "Right")]
+
+    def shakes(stage: str) -> Any:
+        at = skeleton.globals(poses[stage])[1][:, hands]
+        return np.linalg.norm(np.diff(at, 2, axis=0), axis=-1) * 3600  # m/s2
+
+    assert np.percentile(shakes("contacts"), 99) < np.percentile(shakes("life"), 99) + 15.0
+    assert shakes("contacts").mean() < 2.0 * shakes("life").mean()

@@ -25,6 +25,7 @@ inline constexpr double FOLDED = 0.906; // cosine of the least angle inside an e
 // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 inline constexpr double WRIST = 0.819;
 inline constexpr double SOFT = 0.006; // metres of depth over which the push out of the body sets in
+inline constexpr double FIRM = 0.03; // metres of depth from which on a part resists what pushes towards it
 inline constexpr double EVEN = 0.05; // how much the middle counts where lines are side by side
 // where a straight arm bends to: no side in particular, but always one
 inline const std::tuple<double, double, double> STRAIGHT = std::tuple<double, double, double>{0.31, 0.52, 0.8};
@@ -621,13 +622,17 @@ inline std::tuple<double, double, double> _shift(
             double inner = std::min(1.0, gap / radii); // nearer to the line it is not pushed all the way
             inner = inner * inner * (3.0 - 2.0 * inner);
             if (first) {
-                lang::at(whole, side) = std::min(lang::at(whole, side), inner);
+                lang::at(whole, side) = std::min(lang::at(whole, side), 1.0 - share * (1.0 - inner));
                 inner = 1.0;
             }
             amount = amount * share * inner;
             double part = mine->kind == contact_solve::FOREARM ? contact_solve::_along(ends, 2 * i, 2 * k) : 1.0;
             std::tuple<double, double, double> way = std::tuple<double, double, double>{x / gap, y / gap, z / gap};
-            double left = amount - part * plain_vectors::dot(way, shift);
+            double pushed = part * plain_vectors::dot(way, shift);
+            if (pushed < 0.0) { // others push towards it: what hardly touches or hardly counts hardly resists
+                pushed = pushed * share * std::min(1.0, depth / contact_solve::FIRM);
+            }
+            double left = amount - pushed;
             if (left > 0.0) {
                 shift = plain_vectors::plus(
                     shift,

@@ -9,6 +9,7 @@
 // Translated from metagraph/playback/planning/director.py; change that, and translate anew.
 #pragma once
 
+#include "model.hpp"
 #include "language.hpp"
 
 namespace metagraph {
@@ -21,10 +22,20 @@ inline constexpr double APART = 30.0; // seconds between two of those on one lay
 // seconds of rest after which actions need to have rested only `SHORTER` as long
 inline constexpr double LONG_REST = 30.0;
 inline constexpr double SHORTER = 0.3;
+inline constexpr double LEAST_BEATS = 18.0; // seconds after which a gesture that hardly shows is done again, at least
+inline constexpr double MOST_BEATS = 180.0; // and at most
+inline constexpr double EACH = 7.0; // seconds of those for each gesture of the arms that the character has
 inline constexpr double STALE = 0.05; // least factor of the likelihood of what has just been played
 inline constexpr double LEAVES_HOME = 0.2; // share of the written tilts of the head that leave the stance it begins in
 inline constexpr double GOES_HOME = 0.7; // share of the written moves of a tilted head that go back there
-inline double repeat_interval(const std::string& kind, double prominence);
+inline constexpr double MUSES = 2.0; // seconds that a thought goes on at least for which a hand goes to the chin
+// seconds after a thought in which anything that is written takes the hand away again
+inline constexpr double MUSED = 10.0;
+// words of such a stance's name
+inline const List<std::string> THOUGHTFUL = List<std::string>{"chin", "thinking", "pondering", "musing"};
+inline std::string musing(const Map<std::string, Ref<Stance>>& stances);
+inline double beat_interval(const std::string& layer, int gestures);
+inline double repeat_interval(const std::string& kind, double prominence, double beats);
 inline double posture(const std::string& layer);
 inline double freshness(double since, double needed);
 
@@ -32,15 +43,37 @@ inline double freshness(double since, double needed);
 
 namespace director {
 
+/// Return the first stance of the arms whose name says that one thinks in it; "" for none.
+inline std::string musing(const Map<std::string, Ref<Stance>>& stances) {
+    for (const auto& [ident, stance] : stances) {
+        for (const auto& word : lang::words(lang::lowered(stance->name))) {
+            if (lang::contains(director::THOUGHTFUL, word)
+                || lang::contains(director::THOUGHTFUL, std::get<2>(lang::parted_last(word, "_")))) {
+                return ident;
+            }
+        }
+    }
+    return "";
+}
+
+/// Return after how many seconds a gesture that hardly shows may be done again: with many gestures of the arms, not for
+/// minutes; with few, soon. gestures: how many the layer has.
+inline double beat_interval(const std::string& layer, int gestures) {
+    if (layer != "arms") {
+        return director::LEAST_BEATS;
+    }
+    return std::min(director::MOST_BEATS, std::max(director::LEAST_BEATS, director::EACH * gestures));
+}
+
 /// Return after how many seconds an action may be done again.
 ///
-/// That is 18 s for a beat that hardly shows, six minutes for a gesture that stands out, and 4 to 10 minutes for
-/// fidgets, which only time calls for. prominence: 0..1.
-inline double repeat_interval(const std::string& kind, double prominence) {
+/// That is from `beats` (`beat_interval`) to six minutes for gestures, the longer the more they stand out, and 5 to 10
+/// minutes for fidgets, which only time calls for. prominence: 0..1.
+inline double repeat_interval(const std::string& kind, double prominence, double beats) {
     if (kind == "gesture") {
-        return 18.0 * std::exp(std::log(20.0) * prominence);
+        return beats * std::exp(std::log(360.0 / beats) * prominence);
     }
-    return 240.0 * std::exp(std::log(2.5) * prominence);
+    return 300.0 * std::exp(std::log(2.0) * prominence);
 }
 
 /// Return how many seconds a stance is kept at least before the model changes it.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "model.hpp"
+#include "track.hpp"
 #include "meta_plan.hpp"
 #include "cue_shapes.hpp"
 #include "markov.hpp"
@@ -35,7 +36,14 @@ inline Ref<LayerDraft> draft(
     const Set<std::string>& stopped,
     double end,
     const std::optional<std::string>& stance,
-    const Ref<Moods>& moods
+    const Ref<Moods>& moods,
+    const Ref<Track>& track
+);
+inline bool _leaves(
+    const Ref<MetaAction>& running,
+    const Set<std::string>& stopped,
+    const Ref<Track>& track,
+    double now
 );
 inline Ref<MetaRequest> in_time(const Ref<MetaRequest>& request, const Ref<Moods>& moods);
 inline Ref<MetaAction> meta_of(const Ref<MetaRequest>& request);
@@ -108,7 +116,7 @@ namespace layer_planning {
 /// chain: the model that writes when there are no requests, or None. kinds: the kinds of actions that the layer has.
 /// told: reports of the plan so far. fresh: new requests, of all layers. replaced: ids of requests that are replaced or
 /// withdrawn; stopped: those withdrawn, whose running action is left. stance: the stance in which the layer would
-/// begin. moods: the mood over time.
+/// begin. moods: the mood over time. track: what lasts, such as the mode.
 inline Ref<LayerDraft> draft(
     const Ref<Project>& project,
     const Ref<MetaGraph>& graph,
@@ -123,7 +131,8 @@ inline Ref<LayerDraft> draft(
     const Set<std::string>& stopped,
     double end,
     const std::optional<std::string>& stance,
-    const Ref<Moods>& moods
+    const Ref<Moods>& moods,
+    const Ref<Track>& track
 ) {
     std::string layer = graph->layer;
     List<Ref<MetaAction>> asked;
@@ -212,7 +221,8 @@ inline Ref<LayerDraft> draft(
         }
     }
     std::string begin = layer_planning::_begin(graph, old, stance);
-    Ref<Performer> performer = sampling::performer_after(project, graph, seed, begin, old->past, kept, moods);
+    Ref<Performer> performer = sampling::performer_after(project, graph, seed, begin, old->past, kept, moods, track);
+    performer->model = chain;
     if (begin == "" || !performer->begin(begin)) {
         std::string why = lang::text("the ", layer, " layer has no stance with a loop to begin in");
         List<Ref<MetaAction>> waits = lang::together(future, asked);
@@ -239,7 +249,8 @@ inline Ref<LayerDraft> draft(
             }
         }
         Ref<MetaAction> running = first;
-        performer->make_way(running, asked, now, running != nullptr && lang::contains(stopped, running->request->id));
+        bool leaves = layer_planning::_leaves(running, stopped, track, now);
+        performer->make_way(running, asked, now, leaves);
     }
     if (lang::len(old->rests) > 0 && now > 0) {
         Set<double> begun;
@@ -266,6 +277,21 @@ inline Ref<LayerDraft> draft(
     auto [placed, moved] = replan::replan(lang::together(future, written, asked), project->settings, busy);
     List<Ref<Report>> every = lang::together(reports, delayed, moved);
     return lang::made<LayerDraft>(layer, performer, true, done, placed, every, old->past, cursor, written);
+}
+
+/// Return whether the running action is left: it was stopped, or it is a gesture of the character's own and what it
+/// said was broken off.
+inline bool _leaves(
+    const Ref<MetaAction>& running,
+    const Set<std::string>& stopped,
+    const Ref<Track>& track,
+    double now
+) {
+    if (running == nullptr) {
+        return false;
+    }
+    bool own = running->written && running->request->kind == "gesture";
+    return lang::contains(stopped, running->request->id) || (own && track->hushed_at(now));
 }
 
 /// Return a request that may begin earlier, by the extra time that its preparation takes in its mood.

@@ -355,9 +355,7 @@ inline double extent(const Ref<Mood>& mood) {
 
 /// Return how fast actions are played: a factor of their own speed.
 inline double tempo(const Ref<Mood>& mood) {
-    double pace = mood::liveliness(mood);
-    double by_mood = pace > 0 ? 1 + 0.25 * pace : 1 + 0.3 * pace;
-    return mood::within(by_mood, mood::LEAST_TEMPO, mood::MOST_TEMPO);
+    return mood::within(1 + 0.25 * mood::liveliness(mood), mood::LEAST_TEMPO, mood::MOST_TEMPO);
 }
 
 /// Return how much longer clip seconds take at a speed than at their own speed, exactly 0 at that speed.
@@ -450,14 +448,14 @@ inline Ref<Bearing> bearing(const Ref<Mood>& mood) {
     return lang::made<Bearing>(
         mood::within(i * (-0.7 * v - 0.5 * a), -0.4, 1.0),
         mood::within(i * (2.0 * up * (1 - well) + 4.5 * scared - 1.5 * down - ill * (1 - up)), -2.0, 6.0),
-        mood::within(i * (0.5 * down - 0.5 * scared - 0.15 * cross), -0.6, 0.5),
+        mood::within(i * (0.5 * down - 0.5 * scared - 0.15 * cross - 1.1 * up * well), -0.6, 0.5),
         mood::within(i * well * (1.2 + 0.3 * up - 0.6 * down), 0.0, 1.0),
         mood::within(i * (1.4 * ill * (1 - up) * (1 - 0.6 * down) + 0.35 * cross + 0.4 * scared), 0.0, 1.0),
         mood::within(i * (0.5 * up * std::max(0.0, 0.4 - v) + 0.8 * cross) * (1 - scared), 0.0, 1.0),
         mood::within(i * (2.0 * ill * (1 - up) * (1 - down) + 0.9 * scared), 0.0, 1.0),
         mood::within(i * (0.3 * up * std::max(0.0, 0.3 - v) + 0.9 * cross - 0.7 * scared), -1.0, 1.0),
         mood::within(i * 1.2 * up * std::max(0.0, 1.0 - 2.0 * well) * (1 - 0.8 * scared), 0.0, 1.0),
-        mood::within(i * (0.6 * scared + 0.3 * up * well), 0.0, 1.0),
+        mood::within(i * (0.6 * scared + 1.6 * up * well), 0.0, 1.0),
         mood::within(i * (0.5 * scared + 0.4 * ill * (1 - up)), 0.0, 1.0)
     );
 }

@@ -10,14 +10,6 @@
 namespace metagraph {
 namespace planner {
 
-/// Whether what a model wrote is performed: not where it would leave a stance that was asked for, to stay in, and as often as
-/// its mode and mood say.
-inline bool performed(const LayerGraph& layer, const Plan& plan, const Ref<MetaAction>& meta, const Ref<Moods>& moods) {
-    if (!mood::stirs(mood::mood_at(moods, meta->start), plan.seed, meta->request->id)) return false;
-    const bool leaves = meta->request->kind == "transition" && plan.track->stays_at(meta->request->layer, meta->start);
-    return !leaves && markov::performs(layer.markov, plan.seed, meta, wanted::mode_at(plan.track, meta->start));
-}
-
 /// Return the plan with new requests worked in, others withdrawn, and the horizon moved to `end`.
 ///
 /// What starts before `now` stays exactly as it was. What was planned for later is taken back to its meta actions, merged
@@ -46,13 +38,10 @@ inline Ref<const Plan> extend(
         const LayerGraph& own = graph.layer(layer);
         const Ref<LayerDraft> draft = layer_planning::draft(
             graph.project, own.graph, options.idle ? own.markov : nullptr, own.kinds, plan.layers.at(layer), plan.reports,
-            plan.seed, now, lang::values(fresh), again, stopped, end, lang::get(options.stances, layer), moods
+            plan.seed, now, lang::values(fresh), again, stopped, end, lang::get(options.stances, layer), moods,
+            plan.track
         );
-        List<Ref<MetaAction>> metas;
-        for (const auto& meta : draft->placed) {
-            if (!meta->written || performed(own, plan, meta, moods)) metas.push_back(meta);
-        }
-        out->layers[layer] = draft->performed(metas, end);
+        out->layers[layer] = draft->performed(draft->placed, end);
         lang::extend(out->reports, draft->reports);
     }
     std::stable_sort(out->reports.begin(), out->reports.end(), [](const auto& a, const auto& b) { return a->at < b->at; });

@@ -5,11 +5,14 @@
 
 #include "model.hpp"
 #include "repeating.hpp"
+#include "track.hpp"
+#include "wanted.hpp"
 #include "meta_plan.hpp"
 #include "bounds.hpp"
 #include "choice.hpp"
 #include "cue_shapes.hpp"
 #include "director.hpp"
+#include "markov.hpp"
 #include "mood.hpp"
 #include "prominence.hpp"
 #include "remembering.hpp"
@@ -36,7 +39,8 @@ inline Ref<Performer> performer_after(
     const std::string& begin,
     const Ref<Past>& past,
     const List<Ref<Cue>>& cues,
-    const Ref<Moods>& moods
+    const Ref<Moods>& moods,
+    const Ref<Track>& track
 );
 
 }  // namespace sampling
@@ -55,13 +59,15 @@ struct SamplingStep {
 /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun:
 /// keys of meta actions whose chain of transitions already plays. served: keys of those that the action of another one
 /// serves, too. moods: the mood over time. candidates: the actions of each `node` that may be drawn, for the nodes
-/// needed so far. acted: when the last action ended.
+/// needed so far. acted: when the last action ended. track: what lasts. model: the one that wrote what was not
+/// requested, None if there is none. beats: seconds after which a gesture that hardly shows may be done again.
 struct Performer {
     Ref<Project> project;
     Ref<MetaGraph> graph;
     std::uint32_t seed;
     std::string stance;
     Ref<Moods> moods;
+    Ref<Track> track;
     double free;
     double acted;
     Map<std::string, int> uses;
@@ -73,6 +79,8 @@ struct Performer {
     Set<std::string> begun;
     Set<std::string> served;
     Map<std::string, List<Ref<Action>>> candidates;
+    Ref<Markov> model;
+    double beats;
 
     Performer(
         Ref<Project> project_,
@@ -80,6 +88,7 @@ struct Performer {
         std::uint32_t seed_,
         std::string stance_,
         Ref<Moods> moods_,
+        Ref<Track> track_,
         double free_ = 0.0,
         double acted_ = 0.0,
         Map<std::string, int> uses_ = Map<std::string, int>{},
@@ -90,13 +99,16 @@ struct Performer {
         List<Ref<Report>> reports_ = List<Ref<Report>>{},
         Set<std::string> begun_ = Set<std::string>{},
         Set<std::string> served_ = Set<std::string>{},
-        Map<std::string, List<Ref<Action>>> candidates_ = Map<std::string, List<Ref<Action>>>{}
+        Map<std::string, List<Ref<Action>>> candidates_ = Map<std::string, List<Ref<Action>>>{},
+        Ref<Markov> model_ = nullptr,
+        double beats_ = director::LEAST_BEATS
     )
         : project(std::move(project_)),
             graph(std::move(graph_)),
             seed(seed_),
             stance(std::move(stance_)),
             moods(std::move(moods_)),
+            track(std::move(track_)),
             free(free_),
             acted(acted_),
             uses(std::move(uses_)),
@@ -107,7 +119,9 @@ struct Performer {
             reports(std::move(reports_)),
             begun(std::move(begun_)),
             served(std::move(served_)),
-            candidates(std::move(candidates_)) {}
+            candidates(std::move(candidates_)),
+            model(std::move(model_)),
+            beats(beats_) {}
 
     /// Note that a cue is played.
     void note(const Ref<Cue>& cue, const std::string& then);
@@ -122,6 +136,24 @@ struct Performer {
     void perform(const List<Ref<MetaAction>>& metas, double end);
 
     void _realise(const Ref<Bound>& bound, double now);
+
+    /// Return whether what a model wrote is performed at a time: not out of a stance that a request holds, and as often
+    /// as mode and mood say. Anything may begin a long thought, or end it.
+    bool _performs(const Ref<MetaAction>& meta, double now);
+
+    /// Return whether what a model wrote begins at a time, which may be later than it was written for: not soon after
+    /// an interruption, and nothing that would end a thought.
+    bool _may_begin(const Ref<MetaAction>& meta, double now);
+
+    /// Return whether the arms take or keep the stance in which the character thinks.
+    bool _muses(double now);
+
+    /// Return whether a thought of the character has ended just now.
+    bool _has_mused(double now);
+
+    /// Return the stance that the arms go to whatever a model wrote: the one in which the character thinks, and from
+    /// there home as soon as the thought is over; "" for none.
+    std::string _leads(double now);
 
     /// Return the candidates that come least late, if that is not too late; among them those that leave the following
     /// requests the most time and serve the most of them.
@@ -192,6 +224,13 @@ struct Performer {
     /// Return the actions that the character may do by itself; see `director`.
     List<Ref<Action>> _fresh(const Ref<MetaAction>& meta, const List<Ref<Action>>& candidates, double now);
 
+    /// Return the transitions of the arms that may play for a gesture where all gestures of the stance have played too
+    /// recently, and others of another stance have not.
+    List<Ref<Action>> _moves_on(const Ref<MetaAction>& meta, double now);
+
+    /// Return how many gestures of a stance have not played for long enough.
+    int _count_fresh(const std::optional<std::string>& stance, double now);
+
     /// Return when the stance was last changed; minus infinity for never.
     double _moved();
 
@@ -255,7 +294,13 @@ inline bool Performer::begin(const std::string& stance) {
 }
 
 inline void Performer::perform(const List<Ref<MetaAction>>& metas, double end) {
-    for (const auto& bound : bounds::bounds(metas)) {
+    List<Ref<MetaAction>> performed;
+    for (const auto& m : metas) {
+        if (!m->written || this->_performs(m, m->start)) {
+            performed.push_back(m);
+        }
+    }
+    for (const auto& bound : bounds::bounds(performed)) {
         Ref<MetaAction> meta = bound->meta;
         if (bounds::begins(meta) >= end) {
             continue;
@@ -302,6 +347,9 @@ inline void Performer::perform(const List<Ref<MetaAction>>& metas, double end) {
 inline void Performer::_realise(const Ref<Bound>& bound, double now) {
     Ref<MetaAction> meta = bound->meta;
     double limit = bound->limit;
+    if (meta->written && !lang::contains(this->begun, meta->key()) && !this->_may_begin(meta, now)) {
+        return;
+    }
     std::optional<List<Ref<SamplingStep>>> steps = this->_steps(meta, now);
     if (!steps.has_value()) {
         return;
@@ -381,6 +429,75 @@ inline void Performer::_realise(const Ref<Bound>& bound, double now) {
     for (const auto& one : cues) {
         this->_keep(one);
     }
+}
+
+inline bool Performer::_performs(const Ref<MetaAction>& meta, double now) {
+    if (!mood::stirs(mood::mood_at(this->moods, now), this->seed, meta->request->id)) {
+        return false;
+    }
+    if (meta->request->kind == "transition" && this->track->stays_at(this->graph->layer, now)) {
+        return false;
+    }
+    if (this->model == nullptr || this->_muses(now) || this->_has_mused(now)) {
+        return true;
+    }
+    return markov::performs(this->model, this->seed, meta, wanted::mode_at(this->track, now));
+}
+
+inline bool Performer::_may_begin(const Ref<MetaAction>& meta, double now) {
+    if (this->track->hushed_at(now) || !this->_performs(meta, now)) {
+        return false;
+    }
+    if (this->model == nullptr || this->_leads(now) != "") {
+        return true;
+    }
+    bool there = this->stance == director::musing(this->graph->stances);
+    if (there && meta->request->kind == "transition" && this->_muses(now)) {
+        return false;
+    }
+    return markov::performs(this->model, this->seed, meta, wanted::mode_at(this->track, now));
+}
+
+inline bool Performer::_muses(double now) {
+    if (wanted::mode_at(this->track, now) != "thinking"
+        || wanted::mode_at(this->track, now + director::MUSES) != "thinking") {
+        return false;
+    }
+    if (this->graph->layer != "arms" || this->project->settings->variety <= 0) {
+        return false;
+    }
+    return !this->track->stays_at("arms", now) && director::musing(this->graph->stances) != "";
+}
+
+inline bool Performer::_has_mused(double now) {
+    if (this->graph->layer != "arms" || wanted::mode_at(this->track, now) == "thinking") {
+        return false;
+    }
+    return this->project->settings->variety > 0 && wanted::mode_at(this->track, now - director::MUSED) == "thinking";
+}
+
+inline std::string Performer::_leads(double now) {
+    if (this->graph->layer != "arms" || this->project->settings->variety <= 0) {
+        return "";
+    }
+    std::string muses = director::musing(this->graph->stances);
+    if (muses == "" || this->track->stays_at("arms", now)) {
+        return "";
+    }
+    std::optional<std::string> home = this->graph->start;
+    std::string goal = "";
+    if (this->_muses(now)) {
+        goal = muses;
+    } else if (this->stance == muses && home.has_value() && wanted::mode_at(this->track, now) != "thinking") {
+        double came = this->_moved();
+        if (came >= 0 && wanted::mode_at(this->track, came) == "thinking") {
+            goal = *home;
+        }
+    }
+    if (goal == this->stance || goal == "" || lang::len(this->_chain(goal)) == 0) {
+        return "";
+    }
+    return goal;
 }
 
 inline List<Ref<Action>> Performer::_timely(const Ref<Bound>& bound, const List<Ref<Action>>& fitting, double now) {
@@ -689,6 +806,10 @@ inline std::optional<List<Ref<SamplingStep>>> Performer::_steps(const Ref<MetaAc
         }
         return this->_way(meta, *request->stance);
     }
+    std::string leads = meta->written ? this->_leads(now) : std::string("");
+    if (leads != "") {
+        return this->_way(meta, leads);
+    }
     std::string here = remembering::node(this->stance, request->kind);
     if (!lang::contains(this->candidates, here)) {
         List<Ref<Action>> found2;
@@ -754,7 +875,10 @@ inline std::optional<List<Ref<SamplingStep>>> Performer::_steps(const Ref<MetaAc
         }
         exact = found7;
         if (lang::len(every) == 0) {
-            return std::nullopt;
+            List<Ref<Action>> moves = this->_moves_on(meta, now);
+            return lang::len(moves) > 0
+                ? std::optional<List<Ref<SamplingStep>>>(List<Ref<SamplingStep>>{lang::made<SamplingStep>(moves)})
+                : std::nullopt;
         }
         if (lang::len(exact) == 0) {
             exact = lang::len(found) > 0 ? found : every;
@@ -972,11 +1096,18 @@ inline Ref<Action> Performer::_draw(
 
 inline double Performer::_variety(const Ref<Action>& action, double now) {
     double variety = this->project->settings->variety;
-    if (variety <= 0 || action->kind == "transition" || !lang::contains(this->ended, action->id)) {
+    if (variety <= 0) {
         return 1.0;
     }
-    double needed = director::repeat_interval(action->kind, prominence::measure_prominence(this->project, action))
-        * variety;
+    if (action->kind == "transition") {
+        bool talks = this->graph->layer == "arms" && wanted::mode_at(this->track, now) == "talking";
+        return talks ? 1.0 + this->_count_fresh(action->end_stance, now) : 1.0;
+    }
+    if (!lang::contains(this->ended, action->id)) {
+        return 1.0;
+    }
+    double shows = prominence::measure_prominence(this->project, action);
+    double needed = director::repeat_interval(action->kind, shows, this->beats) * variety;
     return director::freshness(now - this->ended.at(action->id), needed);
 }
 
@@ -1016,12 +1147,44 @@ inline List<Ref<Action>> Performer::_fresh(
         if (reminded && shows >= director::STANDS_OUT) {
             continue;
         }
-        double needed = director::repeat_interval(action->kind, shows) * share;
+        double needed = director::repeat_interval(action->kind, shows, this->beats) * share;
         if (!lang::contains(this->ended, action->id) || now >= this->ended.at(action->id) + needed) {
             out.push_back(action);
         }
     }
     return out;
+}
+
+inline List<Ref<Action>> Performer::_moves_on(const Ref<MetaAction>& meta, double now) {
+    List<Ref<Action>> out;
+    if (this->graph->layer != "arms" || meta->request->kind != "gesture" || this->track->stays_at("arms", now)) {
+        return out;
+    }
+    if (now < this->_moved() + director::posture("arms") * this->project->settings->variety) {
+        return out;
+    }
+    for (const auto& action : this->graph->of(this->stance, "transition")) {
+        if (this->_usable(action) && this->_count_fresh(action->end_stance, now) > 0) {
+            out.push_back(action);
+        }
+    }
+    return out;
+}
+
+inline int Performer::_count_fresh(const std::optional<std::string>& stance, double now) {
+    int count = 0;
+    if (!stance.has_value()) {
+        return count;
+    }
+    double variety = this->project->settings->variety;
+    for (const auto& action : this->graph->of(*stance, "gesture")) {
+        double shows = prominence::measure_prominence(this->project, action);
+        double needed = director::repeat_interval("gesture", shows, this->beats) * variety;
+        if (!lang::contains(this->ended, action->id) || now >= this->ended.at(action->id) + needed) {
+            count += 1;
+        }
+    }
+    return count;
 }
 
 inline double Performer::_moved() {
@@ -1260,7 +1423,8 @@ inline Ref<Performer> performer_after(
     const std::string& begin,
     const Ref<Past>& past,
     const List<Ref<Cue>>& cues,
-    const Ref<Moods>& moods
+    const Ref<Moods>& moods,
+    const Ref<Track>& track
 ) {
     std::string stance = lang::contains(graph->stances, past->stance) ? past->stance : begin;
     Ref<Performer> out = lang::made<Performer>(
@@ -1269,12 +1433,20 @@ inline Ref<Performer> performer_after(
         seed,
         stance,
         moods,
+        track,
         past->free,
         past->free,
         past->uses,
         past->recent,
         past->ended
     );
+    List<Ref<Action>> found;
+    for (const auto& a : lang::values(graph->actions)) {
+        if (a->kind == "gesture") {
+            found.push_back(a);
+        }
+    }
+    out->beats = director::beat_interval(graph->layer, lang::len(found));
     for (const auto& cue : cues) {
         out->note(cue, lang::contains(graph->stances, cue->then) ? cue->then : begin);
     }

@@ -11,6 +11,12 @@ namespace metagraph {
 
 struct Track;
 
+namespace track {
+
+inline constexpr double HUSHED = 1.5; // seconds after what was said is broken off in which the models begin nothing
+
+}  // namespace track
+
 /// All lasting requests, each kind sorted by start. Speeches do not overlap.
 struct Track : std::enable_shared_from_this<Track> {
     List<Ref<LookAt>> looks;
@@ -43,6 +49,10 @@ struct Track : std::enable_shared_from_this<Track> {
 
     /// Return whether the models may not change a layer's stance at a time.
     bool stays_at(const std::string& layer, double seconds) const;
+
+    /// Return whether what was said was broken off shortly before a time, and nothing is said since: then the models
+    /// begin nothing.
+    bool hushed_at(double seconds) const;
 
     /// Return the mode requested at a time, or talking while something is said; None if neither applies.
     std::optional<std::string> told_mode(double seconds) const;
@@ -115,6 +125,20 @@ inline bool Track::stays_at(const std::string& layer, double seconds) const {
     }
     Ref<StayFrom> last = first;
     return last != nullptr && last->on && seconds < last->end;
+}
+
+inline bool Track::hushed_at(double seconds) const {
+    List<double> found;
+    for (const auto& s : this->speeches) {
+        found.push_back(s->start);
+    }
+    int place = lang::bisect_right(found, seconds) - 1;
+    if (place < 0 || !lang::at(this->speeches, place)->length.has_value()) {
+        return false;
+    }
+    Ref<Speech> last = lang::at(this->speeches, place);
+    double silent = !last->over.has_value() ? last->end : std::max(last->end, *last->over);
+    return last->end <= seconds && seconds < silent + track::HUSHED;
 }
 
 inline std::optional<std::string> Track::told_mode(double seconds) const {
@@ -350,7 +374,8 @@ inline Ref<Track> Track::since(double seconds) const {
         if (x->start > seconds
             || x->end > seconds
             || (x->more && lang::contains(lasts, x->id))
-            || (x->over.has_value() && *x->over > seconds)) {
+            || (x->over.has_value() && *x->over > seconds - track::HUSHED)
+            || (x->length.has_value() && x->end > seconds - track::HUSHED)) {
             found3.push_back(x);
         }
     }

@@ -14,6 +14,7 @@ export const REACHED = 0.995; // of an arm's length: it does not snap straight
 export const FOLDED = 0.906; // cosine of the least angle inside an elbow, 25 degrees
 export const WRIST = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 export const SOFT = 0.006; // metres of depth over which the push out of the body sets in
+export const FIRM = 0.03; // metres of depth from which on a part resists what pushes towards it
 export const EVEN = 0.05; // how much the middle counts where lines are side by side
 export const STRAIGHT = [0.31, 0.52, 0.8]; // where a straight arm bends to: no side in particular, but always one
 export const ELBOW = 0.3; // how little a forearm is pushed near its elbow, which a wrist cannot move
@@ -472,13 +473,17 @@ function _shift(rig, ends, balls, side, held, across, whole, first) {
       let inner = Math.min(1, gap / radii); // nearer to the line it is not pushed all the way
       inner = inner * inner * (3 - 2 * inner);
       if (first) {
-        whole[side] = Math.min(whole[side], inner);
+        whole[side] = Math.min(whole[side], 1 - share * (1 - inner));
         inner = 1;
       }
       amount = amount * share * inner;
       const part = mine.kind === FOREARM ? _along(ends, 2 * i, 2 * k) : 1;
       const way = [x / gap, y / gap, z / gap];
-      const left = amount - part * dot(way, shift);
+      let pushed = part * dot(way, shift);
+      if (pushed < 0) { // others push towards it: what hardly touches or hardly counts hardly resists
+        pushed = pushed * share * Math.min(1, depth / FIRM);
+      }
+      const left = amount - pushed;
       if (left > 0) {
         shift = plus(shift, scaled(way, left * part / (part * part + ELBOW * (1 - part))));
       }

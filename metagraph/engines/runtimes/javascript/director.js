@@ -9,29 +9,67 @@
  * Translated from metagraph/playback/planning/director.py; change that, and translate anew.
  */
 
+import { partedLast, splitWords } from "./basics.js";
 
 export const STANDS_OUT = 0.65; // prominence from which on an act is one that a viewer remembers
 export const APART = 30; // seconds between two of those on one layer
 export const LONG_REST = 30; // seconds of rest after which actions need to have rested only `SHORTER` as long
 export const SHORTER = 0.3;
+export const LEAST_BEATS = 18; // seconds after which a gesture that hardly shows is done again, at least
+export const MOST_BEATS = 180; // and at most
+export const EACH = 7; // seconds of those for each gesture of the arms that the character has
 export const STALE = 0.05; // least factor of the likelihood of what has just been played
 export const LEAVES_HOME = 0.2; // share of the written tilts of the head that leave the stance it begins in
 export const GOES_HOME = 0.7; // share of the written moves of a tilted head that go back there
+export const MUSES = 2; // seconds that a thought goes on at least for which a hand goes to the chin
+export const MUSED = 10; // seconds after a thought in which anything that is written takes the hand away again
+export const THOUGHTFUL = ["chin", "thinking", "pondering", "musing"]; // words of such a stance's name
+
+/**
+ * Return the first stance of the arms whose name says that one thinks in it; "" for none.
+ * @param {Map<string, Stance>} stances
+ * @returns {string}
+ */
+export function musing(stances) {
+  for (const [ident, stance] of stances) {
+    for (const word of splitWords(stance.name.toLowerCase())) {
+      if (THOUGHTFUL.includes(word) || THOUGHTFUL.includes(partedLast(word, "_")[2])) {
+        return ident;
+      }
+    }
+  }
+  return "";
+}
+
+/**
+ * Return after how many seconds a gesture that hardly shows may be done again: with many gestures of the arms, not for
+ * minutes; with few, soon. gestures: how many the layer has.
+ * @param {string} layer
+ * @param {number} gestures
+ * @returns {number}
+ */
+export function beatInterval(layer, gestures) {
+  if (layer !== "arms") {
+    return LEAST_BEATS;
+  }
+  return Math.min(MOST_BEATS, Math.max(LEAST_BEATS, EACH * gestures));
+}
 
 /**
  * Return after how many seconds an action may be done again.
  *
- * That is 18 s for a beat that hardly shows, six minutes for a gesture that stands out, and 4 to 10 minutes for fidgets,
- * which only time calls for. prominence: 0..1.
+ * That is from `beats` (`beat_interval`) to six minutes for gestures, the longer the more they stand out, and 5 to 10
+ * minutes for fidgets, which only time calls for. prominence: 0..1.
  * @param {string} kind
  * @param {number} prominence
+ * @param {number} beats
  * @returns {number}
  */
-export function repeatInterval(kind, prominence) {
+export function repeatInterval(kind, prominence, beats) {
   if (kind === "gesture") {
-    return 18 * Math.exp(Math.log(20) * prominence);
+    return beats * Math.exp(Math.log(360 / beats) * prominence);
   }
-  return 240 * Math.exp(Math.log(2.5) * prominence);
+  return 300 * Math.exp(Math.log(2) * prominence);
 }
 
 /**

@@ -59,7 +59,7 @@ export class LayerDraft {
  * chain: the model that writes when there are no requests, or None. kinds: the kinds of actions that the layer has. told:
  * reports of the plan so far. fresh: new requests, of all layers. replaced: ids of requests that are replaced or withdrawn;
  * stopped: those withdrawn, whose running action is left. stance: the stance in which the layer would begin. moods: the mood
- * over time.
+ * over time. track: what lasts, such as the mode.
  * @param {Project} project
  * @param {MetaGraph} graph
  * @param {?Markov} chain
@@ -74,9 +74,26 @@ export class LayerDraft {
  * @param {number} end
  * @param {?string} stance
  * @param {Moods} moods
+ * @param {Track} track
  * @returns {LayerDraft}
  */
-export function draft(project, graph, chain, kinds, old, told, seed, now, fresh, replaced, stopped, end, stance, moods) {
+export function draft(
+  project,
+  graph,
+  chain,
+  kinds,
+  old,
+  told,
+  seed,
+  now,
+  fresh,
+  replaced,
+  stopped,
+  end,
+  stance,
+  moods,
+  track,
+) {
   const layer = graph.layer;
   let asked = fresh.filter((request) => request.layer === layer).map((request) => metaOf(inTime(request, moods)));
   const kept = old.cues.filter((cue) => cue.start < now);
@@ -127,7 +144,8 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
       && ((TEMPORAL.has(report.outcome) && !judged.has(report.request))
         || !(planned.get(report.request) ?? []).includes(report.at)));
   const begin = _begin(graph, old, stance);
-  const performer = performerAfter(project, graph, seed, begin, old.past, kept, moods);
+  const performer = performerAfter(project, graph, seed, begin, old.past, kept, moods, track);
+  performer.model = chain;
   if (begin === "" || !performer.begin(begin)) {
     const why = `the ${layer} layer has no stance with a loop to begin in`;
     const waits = [...future, ...asked];
@@ -141,7 +159,8 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   performer.begun = new Set(kept.filter((cue) => waiting.has(cue.meta)).map((cue) => cue.meta));
   if (kept.length > 0 && kept[kept.length - 1].end > now) {
     const running = old.metas.find((meta) => meta.key === kept[kept.length - 1].meta) ?? null;
-    performer.makeWay(running, asked, now, running !== null && stopped.has(running.request.id));
+    const leaves = _leaves(running, stopped, track, now);
+    performer.makeWay(running, asked, now, leaves);
   }
   if (old.rests.length > 0 && now > 0) {
     const begun = new Set(performer.cues.map((cue) => cue.end - cue.blendOut));
@@ -159,6 +178,23 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   const [placed, moved] = replan([...future, ...written, ...asked], project.settings, busy);
   const every = [...reports, ...delayed, ...moved];
   return new LayerDraft(layer, performer, true, done, placed, every, old.past, cursor, written);
+}
+
+/**
+ * Return whether the running action is left: it was stopped, or it is a gesture of the character's own and what it said was
+ * broken off.
+ * @param {?MetaAction} running
+ * @param {Set<string>} stopped
+ * @param {Track} track
+ * @param {number} now
+ * @returns {boolean}
+ */
+function _leaves(running, stopped, track, now) {
+  if (running === null) {
+    return false;
+  }
+  const own = running.written && running.request.kind === "gesture";
+  return stopped.has(running.request.id) || (own && track.hushedAt(now));
 }
 
 /**

@@ -360,9 +360,7 @@ export function extent(mood) {
  * @returns {number}
  */
 export function tempo(mood) {
-  const pace = liveliness(mood);
-  const byMood = pace > 0 ? 1 + 0.25 * pace : 1 + 0.3 * pace;
-  return within(byMood, LEAST_TEMPO, MOST_TEMPO);
+  return within(1 + 0.25 * liveliness(mood), LEAST_TEMPO, MOST_TEMPO);
 }
 
 /**
@@ -485,14 +483,14 @@ export function bearing(mood) {
   return new Bearing(
     within(i * (-0.7 * v - 0.5 * a), -0.4, 1),
     within(i * (2 * up * (1 - well) + 4.5 * scared - 1.5 * down - ill * (1 - up)), -2, 6),
-    within(i * (0.5 * down - 0.5 * scared - 0.15 * cross), -0.6, 0.5),
+    within(i * (0.5 * down - 0.5 * scared - 0.15 * cross - 1.1 * up * well), -0.6, 0.5),
     within(i * well * (1.2 + 0.3 * up - 0.6 * down), 0, 1),
     within(i * (1.4 * ill * (1 - up) * (1 - 0.6 * down) + 0.35 * cross + 0.4 * scared), 0, 1),
     within(i * (0.5 * up * Math.max(0, 0.4 - v) + 0.8 * cross) * (1 - scared), 0, 1),
     within(i * (2 * ill * (1 - up) * (1 - down) + 0.9 * scared), 0, 1),
     within(i * (0.3 * up * Math.max(0, 0.3 - v) + 0.9 * cross - 0.7 * scared), -1, 1),
     within(i * 1.2 * up * Math.max(0, 1 - 2 * well) * (1 - 0.8 * scared), 0, 1),
-    within(i * (0.6 * scared + 0.3 * up * well), 0, 1),
+    within(i * (0.6 * scared + 1.6 * up * well), 0, 1),
     within(i * (0.5 * scared + 0.4 * ill * (1 - up)), 0, 1),
   );
 }

@@ -6,10 +6,8 @@
  */
 
 import { draft } from "./layer_planning.js";
-import { performs } from "./markov.js";
-import { moodAt, stirs } from "./mood.js";
 import { schedule } from "./schedule.js";
-import { modeAt, moodsOf } from "./wanted.js";
+import { moodsOf } from "./wanted.js";
 import { LAYERS } from "./words.js";
 
 /**
@@ -40,13 +38,9 @@ export function extend(graph, plan, now, requests, end, { stances = {}, idle = t
     const chain = idle ? of.markov : null;
     const stance = stances?.[layer] ?? null;
     const drafted = draft(
-      graph, of, chain, of.kinds, plan.layers[layer], plan.reports, plan.seed, now, fresh, again, stopped, end, stance, moods,
+      graph, of, chain, of.kinds, plan.layers[layer], plan.reports, plan.seed, now, fresh, again, stopped, end, stance, moods, plan.track,
     );
-    // What a model wrote is not performed where it would leave a stance that was asked for, to stay in, and as often as its mode and mood say.
-    const leaves = (m) => m.request.kind === "transition" && plan.track.staysAt(layer, m.start);
-    const moved = (m) => stirs(moodAt(moods, m.start), plan.seed, m.request.id);
-    const performed = (m) => moved(m) && !leaves(m) && performs(of.markov, plan.seed, m, modeAt(plan.track, m.start));
-    layers[layer] = drafted.performed(drafted.placed.filter((m) => !m.written || performed(m)), end);
+    layers[layer] = drafted.performed(drafted.placed, end);
     reports.push(...drafted.reports);
   }
   return {

@@ -5,6 +5,7 @@
  */
 
 import { cycleOf } from "./repeating.js";
+import { modeAt } from "./wanted.js";
 import { Cue, Report, Rest } from "./meta_plan.js";
 import { begins, bounds } from "./bounds.js";
 import { pick, uniform } from "./choice.js";
@@ -25,15 +26,21 @@ import {
 import { 
   APART,
   GOES_HOME,
+  LEAST_BEATS,
   LEAVES_HOME,
   LONG_REST,
+  MUSED,
+  MUSES,
   SHORTER,
   STANDS_OUT,
+  beatInterval,
   freshness,
+  musing,
   posture,
   repeatInterval,
 } from "./director.js";
-import { HELD, changed, drag, extent, favour, madeFor, moodAt, tempo } from "./mood.js";
+import { performs } from "./markov.js";
+import { HELD, changed, drag, extent, favour, madeFor, moodAt, stirs, tempo } from "./mood.js";
 import { measureProminence } from "./prominence.js";
 import { node, remember, rested } from "./remembering.js";
 import { measureVigour } from "./vigour.js";
@@ -62,11 +69,12 @@ export class SamplingStep {
  * uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
  * meta actions whose chain of transitions already plays. served: keys of those that the action of another one serves, too.
  * moods: the mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far. acted:
- * when the last action ended.
+ * when the last action ended. track: what lasts. model: the one that wrote what was not requested, None if there is none.
+ * beats: seconds after which a gesture that hardly shows may be done again.
  *
- * project: Project; graph: MetaGraph; seed: number; stance: string; moods: Moods; free: number; acted: number; uses:
- * Map<string, number>; recent: Map<string, string[]>; ended: Map<string, number>; cues: Cue[]; rests: Rest[]; reports:
- * Report[]; begun: Set<string>; served: Set<string>; candidates: Map<string, Action[]>.
+ * project: Project; graph: MetaGraph; seed: number; stance: string; moods: Moods; track: Track; free: number; acted: number;
+ * uses: Map<string, number>; recent: Map<string, string[]>; ended: Map<string, number>; cues: Cue[]; rests: Rest[]; reports:
+ * Report[]; begun: Set<string>; served: Set<string>; candidates: Map<string, Action[]>; model: ?Markov; beats: number.
  */
 export class Performer {
   constructor(
@@ -75,6 +83,7 @@ export class Performer {
     seed,
     stance,
     moods,
+    track,
     free = 0,
     acted = 0,
     uses = new Map(),
@@ -86,12 +95,15 @@ export class Performer {
     begun = new Set([]),
     served = new Set([]),
     candidates = new Map(),
+    model = null,
+    beats = LEAST_BEATS,
   ) {
     this.project = project;
     this.graph = graph;
     this.seed = seed;
     this.stance = stance;
     this.moods = moods;
+    this.track = track;
     this.free = free;
     this.acted = acted;
     this.uses = uses;
@@ -103,6 +115,8 @@ export class Performer {
     this.begun = begun;
     this.served = served;
     this.candidates = candidates;
+    this.model = model;
+    this.beats = beats;
   }
 
   /** Note that a cue is played. */
@@ -131,7 +145,8 @@ export class Performer {
 
   /** Realise in order those meta actions of a conflict-free meta plan that start before `end`. */
   perform(metas, end) {
-    for (const bound of bounds(metas)) {
+    const performed = metas.filter((m) => !m.written || this.performs(m, m.start));
+    for (const bound of bounds(performed)) {
       const meta = bound.meta;
       if (begins(meta) >= end) {
         continue;
@@ -172,6 +187,9 @@ export class Performer {
   realise(bound, now) {
     const meta = bound.meta;
     const limit = bound.limit;
+    if (meta.written && !this.begun.has(meta.key) && !this.mayBegin(meta, now)) {
+      return;
+    }
     const steps = this.steps(meta, now);
     if (steps === null) {
       return;
@@ -218,6 +236,88 @@ export class Performer {
     for (const one of cues) {
       this.keep(one);
     }
+  }
+
+  /**
+   * Return whether what a model wrote is performed at a time: not out of a stance that a request holds, and as often as mode
+   * and mood say. Anything may begin a long thought, or end it.
+   */
+  performs(meta, now) {
+    if (!stirs(moodAt(this.moods, now), this.seed, meta.request.id)) {
+      return false;
+    }
+    if (meta.request.kind === "transition" && this.track.staysAt(this.graph.layer, now)) {
+      return false;
+    }
+    if (this.model === null || this.muses(now) || this.hasMused(now)) {
+      return true;
+    }
+    return performs(this.model, this.seed, meta, modeAt(this.track, now));
+  }
+
+  /**
+   * Return whether what a model wrote begins at a time, which may be later than it was written for: not soon after an
+   * interruption, and nothing that would end a thought.
+   */
+  mayBegin(meta, now) {
+    if (this.track.hushedAt(now) || !this.performs(meta, now)) {
+      return false;
+    }
+    if (this.model === null || this.leads(now) !== "") {
+      return true;
+    }
+    const there = this.stance === musing(this.graph.stances);
+    if (there && meta.request.kind === "transition" && this.muses(now)) {
+      return false;
+    }
+    return performs(this.model, this.seed, meta, modeAt(this.track, now));
+  }
+
+  /** Return whether the arms take or keep the stance in which the character thinks. */
+  muses(now) {
+    if (modeAt(this.track, now) !== "thinking" || modeAt(this.track, now + MUSES) !== "thinking") {
+      return false;
+    }
+    if (this.graph.layer !== "arms" || this.project.settings.variety <= 0) {
+      return false;
+    }
+    return !this.track.staysAt("arms", now) && musing(this.graph.stances) !== "";
+  }
+
+  /** Return whether a thought of the character has ended just now. */
+  hasMused(now) {
+    if (this.graph.layer !== "arms" || modeAt(this.track, now) === "thinking") {
+      return false;
+    }
+    return this.project.settings.variety > 0 && modeAt(this.track, now - MUSED) === "thinking";
+  }
+
+  /**
+   * Return the stance that the arms go to whatever a model wrote: the one in which the character thinks, and from there home
+   * as soon as the thought is over; "" for none.
+   */
+  leads(now) {
+    if (this.graph.layer !== "arms" || this.project.settings.variety <= 0) {
+      return "";
+    }
+    const muses = musing(this.graph.stances);
+    if (muses === "" || this.track.staysAt("arms", now)) {
+      return "";
+    }
+    const home = this.graph.start;
+    let goal = "";
+    if (this.muses(now)) {
+      goal = muses;
+    } else if (this.stance === muses && home !== null && modeAt(this.track, now) !== "thinking") {
+      const came = this.moved();
+      if (came >= 0 && modeAt(this.track, came) === "thinking") {
+        goal = home;
+      }
+    }
+    if (goal === this.stance || goal === "" || this.chain(goal).length === 0) {
+      return "";
+    }
+    return goal;
   }
 
   /**
@@ -439,6 +539,10 @@ export class Performer {
       }
       return this.way(meta, request.stance);
     }
+    const leads = meta.written ? this.leads(now) : "";
+    if (leads !== "") {
+      return this.way(meta, leads);
+    }
     const here = node(this.stance, request.kind);
     if (!this.candidates.has(here)) {
       this.candidates.set(here, graph.of(this.stance, request.kind).filter((a) => this.usable(a)));
@@ -461,7 +565,8 @@ export class Performer {
       found = found.filter((a) => every.includes(a));
       exact = exact.filter((a) => every.includes(a));
       if (every.length === 0) {
-        return null;
+        const moves = this.movesOn(meta, now);
+        return moves.length > 0 ? [new SamplingStep(moves)] : null;
       }
       if (exact.length === 0) {
         exact = found.length > 0 ? found : every;
@@ -631,10 +736,18 @@ export class Performer {
   /** Return the factor by which variety changes an action's likelihood. */
   variety(action, now) {
     const variety = this.project.settings.variety;
-    if (variety <= 0 || action.kind === "transition" || !this.ended.has(action.id)) {
+    if (variety <= 0) {
       return 1;
     }
-    const needed = repeatInterval(action.kind, measureProminence(this.project, action)) * variety;
+    if (action.kind === "transition") {
+      const talks = this.graph.layer === "arms" && modeAt(this.track, now) === "talking";
+      return talks ? 1 + this.countFresh(action.endStance, now) : 1;
+    }
+    if (!this.ended.has(action.id)) {
+      return 1;
+    }
+    const shows = measureProminence(this.project, action);
+    const needed = repeatInterval(action.kind, shows, this.beats) * variety;
     return freshness(now - this.ended.get(action.id), needed);
   }
 
@@ -665,12 +778,49 @@ export class Performer {
       if (reminded && shows >= STANDS_OUT) {
         continue;
       }
-      const needed = repeatInterval(action.kind, shows) * share;
+      const needed = repeatInterval(action.kind, shows, this.beats) * share;
       if (!this.ended.has(action.id) || now >= this.ended.get(action.id) + needed) {
         out.push(action);
       }
     }
     return out;
+  }
+
+  /**
+   * Return the transitions of the arms that may play for a gesture where all gestures of the stance have played too
+   * recently, and others of another stance have not.
+   */
+  movesOn(meta, now) {
+    const out = [];
+    if (this.graph.layer !== "arms" || meta.request.kind !== "gesture" || this.track.staysAt("arms", now)) {
+      return out;
+    }
+    if (now < this.moved() + posture("arms") * this.project.settings.variety) {
+      return out;
+    }
+    for (const action of this.graph.of(this.stance, "transition")) {
+      if (this.usable(action) && this.countFresh(action.endStance, now) > 0) {
+        out.push(action);
+      }
+    }
+    return out;
+  }
+
+  /** Return how many gestures of a stance have not played for long enough. */
+  countFresh(stance, now) {
+    let count = 0;
+    if (stance === null) {
+      return count;
+    }
+    const variety = this.project.settings.variety;
+    for (const action of this.graph.of(stance, "gesture")) {
+      const shows = measureProminence(this.project, action);
+      const needed = repeatInterval("gesture", shows, this.beats) * variety;
+      if (!this.ended.has(action.id) || now >= this.ended.get(action.id) + needed) {
+        count += 1;
+      }
+    }
+    return count;
   }
 
   /** Return when the stance was last changed; minus infinity for never. */
@@ -857,9 +1007,10 @@ export class Performer {
  * @param {Past} past
  * @param {Cue[]} cues
  * @param {Moods} moods
+ * @param {Track} track
  * @returns {Performer}
  */
-export function performerAfter(project, graph, seed, begin, past, cues, moods) {
+export function performerAfter(project, graph, seed, begin, past, cues, moods, track) {
   const stance = graph.stances.has(past.stance) ? past.stance : begin;
   const out = new Performer(
     project,
@@ -867,12 +1018,14 @@ export function performerAfter(project, graph, seed, begin, past, cues, moods) {
     seed,
     stance,
     moods,
+    track,
     past.free,
     past.free,
     new Map(past.uses),
     new Map(past.recent),
     new Map(past.ended),
   );
+  out.beats = beatInterval(graph.layer, [...graph.actions.values()].filter((a) => a.kind === "gesture").length);
   for (const cue of cues) {
     out.note(cue, graph.stances.has(cue.then) ? cue.then : begin);
   }

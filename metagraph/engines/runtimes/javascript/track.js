@@ -18,6 +18,8 @@ import {
 import { lasting } from "./mood.js";
 import { bisectRight, but, insort } from "./basics.js";
 
+export const HUSHED = 1.5; // seconds after what was said is broken off in which the models begin nothing
+
 /**
  * All lasting requests, each kind sorted by start. Speeches do not overlap.
  *
@@ -51,6 +53,20 @@ export class Track {
   staysAt(layer, seconds) {
     const last = [...this.stays].reverse().find((s) => s.layer === layer && s.start <= seconds) ?? null;
     return last !== null && last.on && seconds < last.end;
+  }
+
+  /**
+   * Return whether what was said was broken off shortly before a time, and nothing is said since: then the models begin
+   * nothing.
+   */
+  hushedAt(seconds) {
+    const place = bisectRight(this.speeches.map((s) => s.start), seconds) - 1;
+    if (place < 0 || this.speeches[place].length === null) {
+      return false;
+    }
+    const last = this.speeches[place];
+    const silent = last.over === null ? last.end : Math.max(last.end, last.over);
+    return last.end <= seconds && seconds < silent + HUSHED;
   }
 
   /** Return the mode requested at a time, or talking while something is said; None if neither applies. */
@@ -137,7 +153,11 @@ export class Track {
     return new Track(
       [...looks],
       this.speeches.filter((x) =>
-        x.start > seconds || x.end > seconds || (x.more && lasts.has(x.id)) || (x.over !== null && x.over > seconds)),
+        x.start > seconds
+          || x.end > seconds
+          || (x.more && lasts.has(x.id))
+          || (x.over !== null && x.over > seconds - HUSHED)
+          || (x.length !== null && x.end > seconds - HUSHED)),
       this.modes.slice(mode),
       [...this.places.entries()].filter(([n, x]) => x.start > seconds || places.get(x.name) === n).map(([n, x]) => x),
       this.blinks.filter((x) => x.start > seconds),

@@ -147,6 +147,7 @@ namespace Metagraph
         public const double Folded = 0.906; // cosine of the least angle inside an elbow, 25 degrees
         public const double Wrist = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
         public const double Soft = 0.006; // metres of depth over which the push out of the body sets in
+        public const double Firm = 0.03; // metres of depth from which on a part resists what pushes towards it
         public const double Even = 0.05; // how much the middle counts where lines are side by side
         // where a straight arm bends to: no side in particular, but always one
         public static readonly (double, double, double) Straight = (0.31, 0.52, 0.8);
@@ -619,13 +620,18 @@ namespace Metagraph
                     inner = inner * inner * (3.0 - 2.0 * inner);
                     if (first)
                     {
-                        whole[side] = Math.Min(whole[side], inner);
+                        whole[side] = Math.Min(whole[side], 1.0 - share * (1.0 - inner));
                         inner = 1.0;
                     }
                     amount = amount * share * inner;
                     var part = mine.Kind == Forearm ? Along(ends, 2 * i, 2 * k) : 1.0;
                     var way = (x / gap, y / gap, z / gap);
-                    var left = amount - part * PlainVectorsRules.Dot(way, shift);
+                    var pushed = part * PlainVectorsRules.Dot(way, shift);
+                    if (pushed < 0.0) // others push towards it: what hardly touches or hardly counts hardly resists
+                    {
+                        pushed = pushed * share * Math.Min(1.0, depth / Firm);
+                    }
+                    var left = amount - pushed;
                     if (left > 0.0)
                     {
                         shift = PlainVectorsRules.Plus(

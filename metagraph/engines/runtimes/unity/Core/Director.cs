@@ -19,23 +19,61 @@ namespace Metagraph
         public const double Apart = 30.0; // seconds between two of those on one layer
         public const double LongRest = 30.0; // seconds of rest after which actions need to have rested only `SHORTER` as long
         public const double Shorter = 0.3;
+        public const double LeastBeats = 18.0; // seconds after which a gesture that hardly shows is done again, at least
+        public const double MostBeats = 180.0; // and at most
+        public const double Each = 7.0; // seconds of those for each gesture of the arms that the character has
         public const double Stale = 0.05; // least factor of the likelihood of what has just been played
         public const double LeavesHome = 0.2; // share of the written tilts of the head that leave the stance it begins in
         public const double GoesHome = 0.7; // share of the written moves of a tilted head that go back there
+        public const double Muses = 2.0; // seconds that a thought goes on at least for which a hand goes to the chin
+        public const double Mused = 10.0; // seconds after a thought in which anything that is written takes the hand away again
+        // words of such a stance's name
+        public static readonly List<string> Thoughtful = new List<string> { "chin", "thinking", "pondering", "musing" };
+
+        /// <summary>Return the first stance of the arms whose name says that one thinks in it; "" for none.</summary>
+        public static string Musing(Dictionary<string, Stance> stances)
+        {
+            foreach (var one in stances)
+            {
+                var ident = one.Key;
+                var stance = one.Value;
+                foreach (string word in PlainText.Words(stance.Name.ToLowerInvariant()))
+                {
+                    if (Thoughtful.Contains(word) || Thoughtful.Contains(PlainText.PartedLast(word, "_").Item3))
+                    {
+                        return ident;
+                    }
+                }
+            }
+            return "";
+        }
+
+        /// <summary>
+        /// Return after how many seconds a gesture that hardly shows may be done again: with many gestures of the arms, not for
+        /// minutes; with few, soon. gestures: how many the layer has.
+        /// </summary>
+        public static double BeatInterval(string layer, int gestures)
+        {
+            if (layer != "arms")
+            {
+                return LeastBeats;
+            }
+            return Math.Min(MostBeats, Math.Max(LeastBeats, Each * gestures));
+        }
 
         /// <summary>
         /// Return after how many seconds an action may be done again.
         ///
-        /// That is 18 s for a beat that hardly shows, six minutes for a gesture that stands out, and 4 to 10 minutes for fidgets,
-        /// which only time calls for. prominence: 0..1.
+        /// That is from `beats` (`beat_interval`) to six minutes for gestures, the longer the more they stand out, and 5 to 10
+        /// minutes for fidgets, which only time calls for. prominence: 0..1.
         /// </summary>
-        public static double RepeatInterval(string kind, double prominence)
+        public static double RepeatInterval(string kind, double prominence, double beats)
         {
             if (kind == "gesture")
             {
-                return 18.0 * Math.Exp(Math.Log(20.0) * prominence);
+                return beats * Math.Exp(Math.Log(360.0 / beats) * prominence);
             }
-            return 240.0 * Math.Exp(Math.Log(2.5) * prominence);
+            return 300.0 * Math.Exp(Math.Log(2.0) * prominence);
         }
 
         /// <summary>Return how many seconds a stance is kept at least before the model changes it.</summary>

@@ -74,7 +74,7 @@ namespace Metagraph
         /// chain: the model that writes when there are no requests, or None. kinds: the kinds of actions that the layer has.
         /// told: reports of the plan so far. fresh: new requests, of all layers. replaced: ids of requests that are replaced or
         /// withdrawn; stopped: those withdrawn, whose running action is left. stance: the stance in which the layer would begin.
-        /// moods: the mood over time.
+        /// moods: the mood over time. track: what lasts, such as the mode.
         /// </summary>
         public static LayerDraft Draft(
             Graph project,
@@ -90,7 +90,8 @@ namespace Metagraph
             HashSet<string> stopped,
             double end,
             string stance,
-            Moods moods
+            Moods moods,
+            Track track
         )
         {
             var layer = graph.Layer;
@@ -150,7 +151,8 @@ namespace Metagraph
                 && ((MetaPlanRules.Temporal.Contains(report.Outcome) && !judged.Contains(report.Request))
                     || !PlainMaps.GetOr(planned, report.Request, new List<double>()).Contains(report.At))).ToList();
             var begin = Begin(graph, old, stance);
-            var performer = SamplingRules.PerformerAfter(project, graph, seed, begin, old.Past, kept, moods);
+            var performer = SamplingRules.PerformerAfter(project, graph, seed, begin, old.Past, kept, moods, track);
+            performer.Model = chain;
             if (begin == "" || !performer.Begin(begin))
             {
                 var why = "the " + layer + " layer has no stance with a loop to begin in";
@@ -168,7 +170,8 @@ namespace Metagraph
             if (kept.Count > 0 && kept[kept.Count - 1].End > now)
             {
                 var running = old.Metas.Where(meta => meta.Key == kept[kept.Count - 1].Meta).FirstOrDefault();
-                performer.MakeWay(running, asked, now, running != null && stopped.Contains(running.Request.Id));
+                var leaves = Leaves(running, stopped, track, now);
+                performer.MakeWay(running, asked, now, leaves);
             }
             if (old.Rests.Count > 0 && now > 0)
             {
@@ -193,6 +196,20 @@ namespace Metagraph
             List<Report> moved = found3.Item2;
             var every = reports.Concat(delayed).Concat(moved).ToList();
             return new LayerDraft(layer, performer, true, done, placed, every, old.Past, cursor, written);
+        }
+
+        /// <summary>
+        /// Return whether the running action is left: it was stopped, or it is a gesture of the character's own and what it said
+        /// was broken off.
+        /// </summary>
+        private static bool Leaves(MetaAction running, HashSet<string> stopped, Track track, double now)
+        {
+            if (running == null)
+            {
+                return false;
+            }
+            var own = running.Written && running.Request.Kind == "gesture";
+            return stopped.Contains(running.Request.Id) || (own && track.HushedAt(now));
         }
 
         /// <summary>

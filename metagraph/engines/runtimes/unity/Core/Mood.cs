@@ -356,9 +356,7 @@ namespace Metagraph
         /// <summary>Return how fast actions are played: a factor of their own speed.</summary>
         public static double Tempo(Mood mood)
         {
-            var pace = Liveliness(mood);
-            var byMood = pace > 0 ? 1 + 0.25 * pace : 1 + 0.3 * pace;
-            return Within(byMood, LeastTempo, MostTempo);
+            return Within(1 + 0.25 * Liveliness(mood), LeastTempo, MostTempo);
         }
 
         /// <summary>
@@ -467,14 +465,14 @@ namespace Metagraph
             return new Bearing(
                 Within(i * (-0.7 * v - 0.5 * a), -0.4, 1.0),
                 Within(i * (2.0 * up * (1 - well) + 4.5 * scared - 1.5 * down - ill * (1 - up)), -2.0, 6.0),
-                Within(i * (0.5 * down - 0.5 * scared - 0.15 * cross), -0.6, 0.5),
+                Within(i * (0.5 * down - 0.5 * scared - 0.15 * cross - 1.1 * up * well), -0.6, 0.5),
                 Within(i * well * (1.2 + 0.3 * up - 0.6 * down), 0.0, 1.0),
                 Within(i * (1.4 * ill * (1 - up) * (1 - 0.6 * down) + 0.35 * cross + 0.4 * scared), 0.0, 1.0),
                 Within(i * (0.5 * up * Math.Max(0.0, 0.4 - v) + 0.8 * cross) * (1 - scared), 0.0, 1.0),
                 Within(i * (2.0 * ill * (1 - up) * (1 - down) + 0.9 * scared), 0.0, 1.0),
                 Within(i * (0.3 * up * Math.Max(0.0, 0.3 - v) + 0.9 * cross - 0.7 * scared), -1.0, 1.0),
                 Within(i * 1.2 * up * Math.Max(0.0, 1.0 - 2.0 * well) * (1 - 0.8 * scared), 0.0, 1.0),
-                Within(i * (0.6 * scared + 0.3 * up * well), 0.0, 1.0),
+                Within(i * (0.6 * scared + 1.6 * up * well), 0.0, 1.0),
                 Within(i * (0.5 * scared + 0.4 * ill * (1 - up)), 0.0, 1.0)
             );
         }

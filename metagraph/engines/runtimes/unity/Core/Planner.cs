@@ -35,8 +35,8 @@ namespace Metagraph
                 stance = stances != null && stances.TryGetValue(layer, out stance) ? stance : null;
                 LayerDraft drafted = LayerPlanningRules.Draft(
                     graph, of, idle ? of.Markov : null, of.Kinds, plan.Layers[layer], plan.Reports, plan.Seed, now, fresh, again, stopped, end,
-                    stance, moods);
-                layers[layer] = drafted.Performed(drafted.Placed.FindAll(m => !m.Written || Performed(of.Markov, plan, m, moods)), end);
+                    stance, moods, plan.Track);
+                layers[layer] = drafted.Performed(drafted.Placed, end);
                 reports.AddRange(drafted.Reports);
             }
             List<MetaRequest> kept = plan.Requests.Where(r => !again.Contains(r.Id)).Concat(fresh).ToList();
@@ -61,20 +61,6 @@ namespace Metagraph
                 }
             }
             return found;
-        }
-
-        /// <summary>
-        /// Whether what a model wrote is performed: not where it would leave a stance that was asked for, to stay in, and as often as its
-        /// mode and mood say.
-        /// </summary>
-        private static bool Performed(Markov model, Plan plan, MetaAction meta, Moods moods)
-        {
-            if (!MoodRules.Stirs(MoodRules.MoodAt(moods, meta.Start), plan.Seed, meta.Request.Id))
-            {
-                return false;
-            }
-            bool leaves = meta.Request.Kind == "transition" && plan.Track.StaysAt(meta.Request.Layer, meta.Start);
-            return !leaves && MarkovRules.Performs(model, plan.Seed, meta, WantedRules.ModeAt(plan.Track, meta.Start));
         }
     }
 }

@@ -26,7 +26,8 @@ namespace Metagraph
     /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
     /// meta actions whose chain of transitions already plays. served: keys of those that the action of another one serves, too.
     /// moods: the mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far. acted:
-    /// when the last action ended.
+    /// when the last action ended. track: what lasts. model: the one that wrote what was not requested, None if there is none.
+    /// beats: seconds after which a gesture that hardly shows may be done again.
     /// </summary>
     public sealed class Performer
     {
@@ -35,6 +36,7 @@ namespace Metagraph
         public uint Seed;
         public string Stance;
         public Moods Moods;
+        public Track Track;
         public double Free;
         public double Acted;
         public Dictionary<string, int> Uses;
@@ -46,6 +48,8 @@ namespace Metagraph
         public HashSet<string> Begun;
         public HashSet<string> Served;
         public Dictionary<string, List<GraphAction>> Candidates;
+        public Markov Model;
+        public double Beats;
 
         public Performer(
             Graph project,
@@ -53,6 +57,7 @@ namespace Metagraph
             uint seed,
             string stance,
             Moods moods,
+            Track track,
             double free = 0.0,
             double acted = 0.0,
             Dictionary<string, int> uses = null,
@@ -63,7 +68,9 @@ namespace Metagraph
             List<Report> reports = null,
             HashSet<string> begun = null,
             HashSet<string> served = null,
-            Dictionary<string, List<GraphAction>> candidates = null
+            Dictionary<string, List<GraphAction>> candidates = null,
+            Markov model = null,
+            double beats = DirectorRules.LeastBeats
         )
         {
             Project = project;
@@ -71,6 +78,7 @@ namespace Metagraph
             Seed = seed;
             Stance = stance;
             Moods = moods;
+            Track = track;
             Free = free;
             Acted = acted;
             Uses = uses ?? new Dictionary<string, int>();
@@ -82,6 +90,8 @@ namespace Metagraph
             Begun = begun ?? new HashSet<string>();
             Served = served ?? new HashSet<string>();
             Candidates = candidates ?? new Dictionary<string, List<GraphAction>>();
+            Model = model;
+            Beats = beats;
         }
 
         /// <summary>Note that a cue is played.</summary>
@@ -118,7 +128,8 @@ namespace Metagraph
         /// <summary>Realise in order those meta actions of a conflict-free meta plan that start before `end`.</summary>
         public void Perform(List<MetaAction> metas, double end)
         {
-            foreach (Bound bound in BoundsRules.Bounds(metas))
+            var performed = metas.Where(m => !m.Written || Performs(m, m.Start)).ToList();
+            foreach (Bound bound in BoundsRules.Bounds(performed))
             {
                 var meta = bound.Meta;
                 if (BoundsRules.Begins(meta) >= end)
@@ -169,6 +180,10 @@ namespace Metagraph
         {
             var meta = bound.Meta;
             var limit = bound.Limit;
+            if (meta.Written && !Begun.Contains(meta.Key) && !MayBegin(meta, now))
+            {
+                return;
+            }
             var steps = Steps(meta, now);
             if (steps == null)
             {
@@ -232,6 +247,110 @@ namespace Metagraph
             {
                 Keep(one);
             }
+        }
+
+        /// <summary>
+        /// Return whether what a model wrote is performed at a time: not out of a stance that a request holds, and as often as
+        /// mode and mood say. Anything may begin a long thought, or end it.
+        /// </summary>
+        public bool Performs(MetaAction meta, double now)
+        {
+            if (!MoodRules.Stirs(MoodRules.MoodAt(Moods, now), Seed, meta.Request.Id))
+            {
+                return false;
+            }
+            if (meta.Request.Kind == "transition" && Track.StaysAt(Graph.Layer, now))
+            {
+                return false;
+            }
+            if (Model == null || Muses(now) || HasMused(now))
+            {
+                return true;
+            }
+            return MarkovRules.Performs(Model, Seed, meta, WantedRules.ModeAt(Track, now));
+        }
+
+        /// <summary>
+        /// Return whether what a model wrote begins at a time, which may be later than it was written for: not soon after an
+        /// interruption, and nothing that would end a thought.
+        /// </summary>
+        public bool MayBegin(MetaAction meta, double now)
+        {
+            if (Track.HushedAt(now) || !Performs(meta, now))
+            {
+                return false;
+            }
+            if (Model == null || Leads(now) != "")
+            {
+                return true;
+            }
+            var there = Stance == DirectorRules.Musing(Graph.Stances);
+            if (there && meta.Request.Kind == "transition" && Muses(now))
+            {
+                return false;
+            }
+            return MarkovRules.Performs(Model, Seed, meta, WantedRules.ModeAt(Track, now));
+        }
+
+        /// <summary>Return whether the arms take or keep the stance in which the character thinks.</summary>
+        public bool Muses(double now)
+        {
+            if (WantedRules.ModeAt(Track, now) != "thinking"
+                || WantedRules.ModeAt(Track, now + DirectorRules.Muses) != "thinking")
+            {
+                return false;
+            }
+            if (Graph.Layer != "arms" || Project.Settings.Variety <= 0)
+            {
+                return false;
+            }
+            return !Track.StaysAt("arms", now) && DirectorRules.Musing(Graph.Stances) != "";
+        }
+
+        /// <summary>Return whether a thought of the character has ended just now.</summary>
+        public bool HasMused(double now)
+        {
+            if (Graph.Layer != "arms" || WantedRules.ModeAt(Track, now) == "thinking")
+            {
+                return false;
+            }
+            return Project.Settings.Variety > 0 && WantedRules.ModeAt(Track, now - DirectorRules.Mused) == "thinking";
+        }
+
+        /// <summary>
+        /// Return the stance that the arms go to whatever a model wrote: the one in which the character thinks, and from there
+        /// home as soon as the thought is over; "" for none.
+        /// </summary>
+        public string Leads(double now)
+        {
+            if (Graph.Layer != "arms" || Project.Settings.Variety <= 0)
+            {
+                return "";
+            }
+            var muses = DirectorRules.Musing(Graph.Stances);
+            if (muses == "" || Track.StaysAt("arms", now))
+            {
+                return "";
+            }
+            var home = Graph.Start;
+            var goal = "";
+            if (Muses(now))
+            {
+                goal = muses;
+            }
+            else if (Stance == muses && home != null && WantedRules.ModeAt(Track, now) != "thinking")
+            {
+                var came = Moved();
+                if (came >= 0 && WantedRules.ModeAt(Track, came) == "thinking")
+                {
+                    goal = home;
+                }
+            }
+            if (goal == Stance || goal == "" || Chain(goal).Count == 0)
+            {
+                return "";
+            }
+            return goal;
         }
 
         /// <summary>
@@ -547,6 +666,11 @@ namespace Metagraph
                 }
                 return Way(meta, request.Stance);
             }
+            var leads = meta.Written ? Leads(now) : "";
+            if (leads != "")
+            {
+                return Way(meta, leads);
+            }
             var here = RememberingRules.Node(Stance, request.Kind);
             if (!Candidates.ContainsKey(here))
             {
@@ -575,7 +699,8 @@ namespace Metagraph
                 exact = exact.Where(a => every.Contains(a)).ToList();
                 if (every.Count == 0)
                 {
-                    return null;
+                    var moves = MovesOn(meta, now);
+                    return moves.Count > 0 ? new List<SamplingStep> { new SamplingStep(moves) } : null;
                 }
                 if (exact.Count == 0)
                 {
@@ -783,11 +908,21 @@ namespace Metagraph
         public double Variety(GraphAction action, double now)
         {
             var variety = Project.Settings.Variety;
-            if (variety <= 0 || action.Kind == "transition" || !Ended.ContainsKey(action.Id))
+            if (variety <= 0)
             {
                 return 1.0;
             }
-            var needed = DirectorRules.RepeatInterval(action.Kind, ProminenceRules.MeasureProminence(Project, action)) * variety;
+            if (action.Kind == "transition")
+            {
+                var talks = Graph.Layer == "arms" && WantedRules.ModeAt(Track, now) == "talking";
+                return talks ? 1.0 + CountFresh(action.EndStance, now) : 1.0;
+            }
+            if (!Ended.ContainsKey(action.Id))
+            {
+                return 1.0;
+            }
+            var shows = ProminenceRules.MeasureProminence(Project, action);
+            var needed = DirectorRules.RepeatInterval(action.Kind, shows, Beats) * variety;
             return DirectorRules.Freshness(now - Ended[action.Id], needed);
         }
 
@@ -825,13 +960,59 @@ namespace Metagraph
                 {
                     continue;
                 }
-                var needed = DirectorRules.RepeatInterval(action.Kind, shows) * share;
+                var needed = DirectorRules.RepeatInterval(action.Kind, shows, Beats) * share;
                 if (!Ended.ContainsKey(action.Id) || now >= Ended[action.Id] + needed)
                 {
                     out_.Add(action);
                 }
             }
             return out_;
+        }
+
+        /// <summary>
+        /// Return the transitions of the arms that may play for a gesture where all gestures of the stance have played too
+        /// recently, and others of another stance have not.
+        /// </summary>
+        public List<GraphAction> MovesOn(MetaAction meta, double now)
+        {
+            var out_ = new List<GraphAction>();
+            if (Graph.Layer != "arms" || meta.Request.Kind != "gesture" || Track.StaysAt("arms", now))
+            {
+                return out_;
+            }
+            if (now < Moved() + DirectorRules.Posture("arms") * Project.Settings.Variety)
+            {
+                return out_;
+            }
+            foreach (GraphAction action in Graph.Of(Stance, "transition"))
+            {
+                if (Usable(action) && CountFresh(action.EndStance, now) > 0)
+                {
+                    out_.Add(action);
+                }
+            }
+            return out_;
+        }
+
+        /// <summary>Return how many gestures of a stance have not played for long enough.</summary>
+        public int CountFresh(string stance, double now)
+        {
+            var count = 0;
+            if (stance == null)
+            {
+                return count;
+            }
+            var variety = Project.Settings.Variety;
+            foreach (GraphAction action in Graph.Of(stance, "gesture"))
+            {
+                var shows = ProminenceRules.MeasureProminence(Project, action);
+                var needed = DirectorRules.RepeatInterval("gesture", shows, Beats) * variety;
+                if (!Ended.ContainsKey(action.Id) || now >= Ended[action.Id] + needed)
+                {
+                    count += 1;
+                }
+            }
+            return count;
         }
 
         /// <summary>Return when the stance was last changed; minus infinity for never.</summary>
@@ -1072,7 +1253,8 @@ namespace Metagraph
             string begin,
             Past past,
             List<Cue> cues,
-            Moods moods
+            Moods moods,
+            Track track
         )
         {
             var stance = graph.Stances.ContainsKey(past.Stance) ? past.Stance : begin;
@@ -1082,11 +1264,16 @@ namespace Metagraph
                 seed,
                 stance,
                 moods,
+                track,
                 past.Free,
                 past.Free,
                 new Dictionary<string, int>(past.Uses),
                 new Dictionary<string, List<string>>(past.Recent),
                 new Dictionary<string, double>(past.Ended)
+            );
+            out_.Beats = DirectorRules.BeatInterval(
+                graph.Layer,
+                graph.Actions.Values.ToList().Where(a => a.Kind == "gesture").ToList().Count
             );
             foreach (Cue cue in cues)
             {

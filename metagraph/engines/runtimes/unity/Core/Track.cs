@@ -57,6 +57,22 @@ namespace Metagraph
         }
 
         /// <summary>
+        /// Return whether what was said was broken off shortly before a time, and nothing is said since: then the models begin
+        /// nothing.
+        /// </summary>
+        public bool HushedAt(double seconds)
+        {
+            var place = PlainLists.Right(Speeches.Select(s => s.Start).ToList(), seconds) - 1;
+            if (place < 0 || Speeches[place].Length == null)
+            {
+                return false;
+            }
+            var last = Speeches[place];
+            var silent = last.Over == null ? last.End : Math.Max(last.End, last.Over.Value);
+            return last.End <= seconds && seconds < silent + TrackRules.Hushed;
+        }
+
+        /// <summary>
         /// Return the mode requested at a time, or talking while something is said; None if neither applies.
         /// </summary>
         public string ToldMode(double seconds)
@@ -182,7 +198,8 @@ namespace Metagraph
                 Speeches.Where(x => x.Start > seconds
                     || x.End > seconds
                     || (x.More && lasts.Contains(x.Id))
-                    || (x.Over != null && x.Over.Value > seconds)).ToList(),
+                    || (x.Over != null && x.Over.Value > seconds - TrackRules.Hushed)
+                    || (x.Length != null && x.End > seconds - TrackRules.Hushed)).ToList(),
                 PlainLists.Part(Modes, mode),
                 Places.Select((item, n) => (n, item)).Where(pair => pair.Item2.Start > seconds
                     || places[pair.Item2.Name] == pair.Item1).Select(pair => pair.Item2).ToList(),
@@ -224,5 +241,10 @@ namespace Metagraph
             }
             return DrawsLike(other);
         }
+    }
+
+    public static class TrackRules
+    {
+        public const double Hushed = 1.5; // seconds after what was said is broken off in which the models begin nothing
     }
 }

@@ -12,19 +12,43 @@ const STANDS_OUT = 0.65  # prominence from which on an act is one that a viewer 
 const APART = 30.0  # seconds between two of those on one layer
 const LONG_REST = 30.0  # seconds of rest after which actions need to have rested only `SHORTER` as long
 const SHORTER = 0.3
+const LEAST_BEATS = 18.0  # seconds after which a gesture that hardly shows is done again, at least
+const MOST_BEATS = 180.0  # and at most
+const EACH = 7.0  # seconds of those for each gesture of the arms that the character has
 const STALE = 0.05  # least factor of the likelihood of what has just been played
 const LEAVES_HOME = 0.2  # share of the written tilts of the head that leave the stance it begins in
 const GOES_HOME = 0.7  # share of the written moves of a tilted head that go back there
+const MUSES = 2.0  # seconds that a thought goes on at least for which a hand goes to the chin
+const MUSED = 10.0  # seconds after a thought in which anything that is written takes the hand away again
+const THOUGHTFUL = ["chin", "thinking", "pondering", "musing"]  # words of such a stance's name
+
+
+# Return the first stance of the arms whose name says that one thinks in it; "" for none.
+static func musing(stances):
+	for ident in stances:
+		var stance = stances[ident]
+		for word in Util.words(stance.name.to_lower()):
+			if THOUGHTFUL.has(word) or THOUGHTFUL.has(Util.parted_last(word, "_")[2]):
+				return ident
+	return ""
+
+
+# Return after how many seconds a gesture that hardly shows may be done again: with many gestures of the arms, not for minutes;
+# with few, soon. gestures: how many the layer has.
+static func beat_interval(layer, gestures):
+	if layer != "arms":
+		return LEAST_BEATS
+	return Util.least(MOST_BEATS, Util.most(LEAST_BEATS, EACH * gestures))
 
 
 # Return after how many seconds an action may be done again.
 #
-# That is 18 s for a beat that hardly shows, six minutes for a gesture that stands out, and 4 to 10 minutes for fidgets, which
-# only time calls for. prominence: 0..1.
-static func repeat_interval(kind, prominence):
+# That is from `beats` (`beat_interval`) to six minutes for gestures, the longer the more they stand out, and 5 to 10 minutes for
+# fidgets, which only time calls for. prominence: 0..1.
+static func repeat_interval(kind, prominence, beats):
 	if kind == "gesture":
-		return 18.0 * exp(log(20.0) * prominence)
-	return 240.0 * exp(log(2.5) * prominence)
+		return beats * exp(log(360.0 / beats) * prominence)
+	return 300.0 * exp(log(2.0) * prominence)
 
 
 # Return how many seconds a stance is kept at least before the model changes it.

@@ -65,8 +65,9 @@ class LayerDraft:
 #
 # chain: the model that writes when there are no requests, or None. kinds: the kinds of actions that the layer has. told: reports
 # of the plan so far. fresh: new requests, of all layers. replaced: ids of requests that are replaced or withdrawn; stopped: those
-# withdrawn, whose running action is left. stance: the stance in which the layer would begin. moods: the mood over time.
-static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, replaced, stopped, end, stance, moods):
+# withdrawn, whose running action is left. stance: the stance in which the layer would begin. moods: the mood over time. track:
+# what lasts, such as the mode.
+static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, replaced, stopped, end, stance, moods, track):
 	var layer = graph.layer
 	var asked = []
 	for request in fresh:
@@ -130,7 +131,8 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 				or not planned.get(report.request, []).has(report.at))):
 			reports.append(report)
 	var begin = _begin(graph, old, stance)
-	var performer = Sampling.performer_after(project, graph, seed_, begin, old.past, kept, moods)
+	var performer = Sampling.performer_after(project, graph, seed_, begin, old.past, kept, moods, track)
+	performer.model = chain
 	if begin == "" or not performer.begin(begin):
 		var why = "the %s layer has no stance with a loop to begin in" % [layer]
 		var waits = future + asked
@@ -150,7 +152,8 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 				first = meta3
 				break
 		var running = first
-		performer.make_way(running, asked, now, running != null and stopped.has(running.request.id))
+		var leaves = _leaves(running, stopped, track, now)
+		performer.make_way(running, asked, now, leaves)
 	if old.rests.size() > 0 and now > 0:
 		var begun = {}
 		for cue in performer.cues:
@@ -174,6 +177,15 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 	var moved = both3[1]
 	var every = reports + delayed + moved
 	return LayerDraft.new(layer, performer, true, done, placed, every, old.past, cursor, written)
+
+
+# Return whether the running action is left: it was stopped, or it is a gesture of the character's own and what it said was broken
+# off.
+static func _leaves(running, stopped, track, now):
+	if running == null:
+		return false
+	var own = running.written and running.request.kind == "gesture"
+	return stopped.has(running.request.id) or (own and track.hushed_at(now))
 
 
 # Return a request that may begin earlier, by the extra time that its preparation takes in its mood.

@@ -5,8 +5,6 @@
 # do, gaze: of that, made when first looked at}; layer plans are those of meta_plan.gd. Seconds throughout.
 
 const Util = preload("util.gd")
-const Markov = preload("markov.gd")
-const Mood = preload("mood.gd")
 const Wanted = preload("wanted.gd")
 const MetaPlan = preload("meta_plan.gd")
 const LayerPlanning = preload("layer_planning.gd")
@@ -50,9 +48,9 @@ static func extend_plan(graph, plan, now, requests, end, stances, idle, withdraw
 		var of = graph.layers[layer]
 		var drafted = LayerPlanning.draft(
 			graph, of, of.markov if idle else null, of.kinds, plan.layers[layer], plan.reports, plan.seed32, now, fresh, again, stopped, end,
-			stances.get(layer), moods
+			stances.get(layer), moods, plan.track
 		)
-		layers[layer] = drafted.performed(_performed(graph, plan, layer, drafted.placed, moods), end)
+		layers[layer] = drafted.performed(drafted.placed, end)
 		reports += drafted.reports
 	var kept = []
 	for request in plan.requests:
@@ -62,19 +60,6 @@ static func extend_plan(graph, plan, now, requests, end, stances, idle, withdraw
 		seed32 = plan.seed32, end = end, layers = layers, reports = Util.by(reports, "at"), requests = kept + fresh, track = plan.track,
 		gaze = plan.gaze, life = Schedule.schedule(graph.life, plan.track, graph, plan.seed32, end, plan.life, now)
 	}
-
-
-# Returns those of a layer's meta actions that are performed. What a model wrote is not where it would leave a stance that was asked for, to
-# stay in, and as often as its mode and mood say.
-static func _performed(graph, plan, layer, metas, moods):
-	var out = []
-	for meta in metas:
-		var stirs = Mood.stirs(Mood.mood_at(moods, meta.start), plan.seed32, meta.request.id)
-		var leaves = meta.request.kind == "transition" and plan.track.stays_at(layer, meta.start)
-		var mode = Wanted.mode_at(plan.track, meta.start)
-		if not meta.written or (stirs and not leaves and Markov.performs(graph.layers[layer].markov, plan.seed32, meta, mode)):
-			out.append(meta)
-	return out
 
 
 # Returns a running plan without what ended before `seconds`; what is planned on from it stays as it would have been.

@@ -3,11 +3,13 @@
 # Translated from metagraph/playback/planning/sampling.py; change that, and translate anew.
 
 const Repeating = preload("repeating.gd")
+const Wanted = preload("wanted.gd")
 const MetaPlan = preload("meta_plan.gd")
 const Bounds = preload("bounds.gd")
 const Choice = preload("choice.gd")
 const CueShapes = preload("cue_shapes.gd")
 const Director = preload("director.gd")
+const Markov = preload("markov.gd")
 const Mood = preload("mood.gd")
 const Prominence = preload("prominence.gd")
 const Remembering = preload("remembering.gd")
@@ -34,13 +36,15 @@ class SamplingStep:
 # uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of meta
 # actions whose chain of transitions already plays. served: keys of those that the action of another one serves, too. moods: the
 # mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far. acted: when the last
-# action ended.
+# action ended. track: what lasts. model: the one that wrote what was not requested, None if there is none. beats: seconds after
+# which a gesture that hardly shows may be done again.
 class Performer:
 	var project
 	var graph
 	var seed_
 	var stance
 	var moods
+	var track
 	var free_
 	var acted
 	var uses
@@ -52,6 +56,8 @@ class Performer:
 	var begun
 	var served
 	var candidates
+	var model
+	var beats
 
 	func _init(
 		project_,
@@ -59,6 +65,7 @@ class Performer:
 		seed_,
 		stance_,
 		moods_,
+		track_,
 		free_ = 0.0,
 		acted_ = 0.0,
 		uses_ = null,
@@ -69,13 +76,16 @@ class Performer:
 		reports_ = null,
 		begun_ = null,
 		served_ = null,
-		candidates_ = null
+		candidates_ = null,
+		model_ = null,
+		beats_ = Director.LEAST_BEATS
 	):
 		self.project = project_
 		self.graph = graph_
 		self.seed_ = seed_
 		self.stance = stance_
 		self.moods = moods_
+		self.track = track_
 		self.free_ = free_
 		self.acted = acted_
 		self.uses = uses_ if uses_ != null else {}
@@ -87,6 +97,8 @@ class Performer:
 		self.begun = begun_ if begun_ != null else {}
 		self.served = served_ if served_ != null else {}
 		self.candidates = candidates_ if candidates_ != null else {}
+		self.model = model_
+		self.beats = beats_
 
 	# Note that a cue is played.
 	func note(cue, then):
@@ -110,7 +122,11 @@ class Performer:
 
 	# Realise in order those meta actions of a conflict-free meta plan that start before `end`.
 	func perform(metas, end):
-		for bound in Bounds.bounds(metas):
+		var performed = []
+		for m in metas:
+			if not m.written or self._performs(m, m.start):
+				performed.append(m)
+		for bound in Bounds.bounds(performed):
 			var meta = bound.meta
 			if Bounds.begins(meta) >= end:
 				continue
@@ -141,6 +157,8 @@ class Performer:
 	func _realise(bound, now):
 		var meta = bound.meta
 		var limit = bound.limit
+		if meta.written and not self.begun.has(meta.key) and not self._may_begin(meta, now):
+			return
 		var steps = self._steps(meta, now)
 		if steps == null:
 			return
@@ -187,6 +205,63 @@ class Performer:
 			stance = cue.then
 		for one in cues:
 			self._keep(one)
+
+	# Return whether what a model wrote is performed at a time: not out of a stance that a request holds, and as often as mode and
+	# mood say. Anything may begin a long thought, or end it.
+	func _performs(meta, now):
+		if not Mood.stirs(Mood.mood_at(self.moods, now), self.seed_, meta.request.id):
+			return false
+		if meta.request.kind == "transition" and self.track.stays_at(self.graph.layer, now):
+			return false
+		if self.model == null or self._muses(now) or self._has_mused(now):
+			return true
+		return Markov.performs(self.model, self.seed_, meta, Wanted.mode_at(self.track, now))
+
+	# Return whether what a model wrote begins at a time, which may be later than it was written for: not soon after an
+	# interruption, and nothing that would end a thought.
+	func _may_begin(meta, now):
+		if self.track.hushed_at(now) or not self._performs(meta, now):
+			return false
+		if self.model == null or self._leads(now) != "":
+			return true
+		var there = self.stance == Director.musing(self.graph.stances)
+		if there and meta.request.kind == "transition" and self._muses(now):
+			return false
+		return Markov.performs(self.model, self.seed_, meta, Wanted.mode_at(self.track, now))
+
+	# Return whether the arms take or keep the stance in which the character thinks.
+	func _muses(now):
+		if (Wanted.mode_at(self.track, now) != "thinking" or Wanted.mode_at(self.track, now + Director.MUSES) != "thinking"):
+			return false
+		if self.graph.layer != "arms" or self.project.settings.variety <= 0:
+			return false
+		return not self.track.stays_at("arms", now) and Director.musing(self.graph.stances) != ""
+
+	# Return whether a thought of the character has ended just now.
+	func _has_mused(now):
+		if self.graph.layer != "arms" or Wanted.mode_at(self.track, now) == "thinking":
+			return false
+		return self.project.settings.variety > 0 and Wanted.mode_at(self.track, now - Director.MUSED) == "thinking"
+
+	# Return the stance that the arms go to whatever a model wrote: the one in which the character thinks, and from there home as
+	# soon as the thought is over; "" for none.
+	func _leads(now):
+		if self.graph.layer != "arms" or self.project.settings.variety <= 0:
+			return ""
+		var muses = Director.musing(self.graph.stances)
+		if muses == "" or self.track.stays_at("arms", now):
+			return ""
+		var home = self.graph.start
+		var goal = ""
+		if self._muses(now):
+			goal = muses
+		elif self.stance == muses and home != null and Wanted.mode_at(self.track, now) != "thinking":
+			var came = self._moved()
+			if came >= 0 and Wanted.mode_at(self.track, came) == "thinking":
+				goal = home
+		if goal == self.stance or goal == "" or self._chain(goal).size() == 0:
+			return ""
+		return goal
 
 	# Return the candidates that come least late, if that is not too late; among them those that leave the following requests the
 	# most time and serve the most of them.
@@ -408,6 +483,9 @@ class Performer:
 				self._tell(meta, "no-stance", "there is no stance '%s' in the %s layer" % [request.stance, graph.layer])
 				return null
 			return self._way(meta, request.stance)
+		var leads = self._leads(now) if meta.written else ""
+		if leads != "":
+			return self._way(meta, leads)
 		var here = Remembering.node(self.stance, request.kind)
 		if not self.candidates.has(here):
 			var found2 = []
@@ -455,7 +533,8 @@ class Performer:
 					found7.append(a)
 			exact = found7
 			if every.size() == 0:
-				return null
+				var moves = self._moves_on(meta, now)
+				return [SamplingStep.new(moves)] if moves.size() > 0 else null
 			if exact.size() == 0:
 				exact = found if found.size() > 0 else every
 		elif meta.written:  # nor worth playing the same again
@@ -616,9 +695,15 @@ class Performer:
 	# Return the factor by which variety changes an action's likelihood.
 	func _variety(action, now):
 		var variety = self.project.settings.variety
-		if variety <= 0 or action.kind == "transition" or not self.ended.has(action.id):
+		if variety <= 0:
 			return 1.0
-		var needed = Director.repeat_interval(action.kind, Prominence.measure_prominence(self.project, action)) * variety
+		if action.kind == "transition":
+			var talks = self.graph.layer == "arms" and Wanted.mode_at(self.track, now) == "talking"
+			return 1.0 + self._count_fresh(action.end_stance, now) if talks else 1.0
+		if not self.ended.has(action.id):
+			return 1.0
+		var shows = Prominence.measure_prominence(self.project, action)
+		var needed = Director.repeat_interval(action.kind, shows, self.beats) * variety
 		return Director.freshness(now - self.ended[action.id], needed)
 
 	# Return the actions that the character may do by itself; see `director`.
@@ -646,10 +731,36 @@ class Performer:
 			var shows = Prominence.measure_prominence(self.project, action)
 			if reminded and shows >= Director.STANDS_OUT:
 				continue
-			var needed = Director.repeat_interval(action.kind, shows) * share
+			var needed = Director.repeat_interval(action.kind, shows, self.beats) * share
 			if not self.ended.has(action.id) or now >= self.ended[action.id] + needed:
 				out.append(action)
 		return out
+
+	# Return the transitions of the arms that may play for a gesture where all gestures of the stance have played too recently,
+	# and others of another stance have not.
+	func _moves_on(meta, now):
+		var out = []
+		if self.graph.layer != "arms" or meta.request.kind != "gesture" or self.track.stays_at("arms", now):
+			return out
+		if now < self._moved() + Director.posture("arms") * self.project.settings.variety:
+			return out
+		for action in self.graph.of(self.stance, "transition"):
+			if self._usable(action) and self._count_fresh(action.end_stance, now) > 0:
+				out.append(action)
+		return out
+
+	# Return how many gestures of a stance have not played for long enough.
+	func _count_fresh(stance, now):
+		var count = 0
+		if stance == null:
+			return count
+		var variety = self.project.settings.variety
+		for action in self.graph.of(stance, "gesture"):
+			var shows = Prominence.measure_prominence(self.project, action)
+			var needed = Director.repeat_interval("gesture", shows, self.beats) * variety
+			if not self.ended.has(action.id) or now >= self.ended[action.id] + needed:
+				count += 1
+		return count
 
 	# Return when the stance was last changed; minus infinity for never.
 	func _moved():
@@ -826,7 +937,7 @@ class Performer:
 
 
 # Return the performer as it is after a past and the cues that played since.
-static func performer_after(project, graph, seed_, begin, past, cues, moods):
+static func performer_after(project, graph, seed_, begin, past, cues, moods, track):
 	var stance = past.stance if graph.stances.has(past.stance) else begin
 	var out = Performer.new(
 		project,
@@ -834,12 +945,18 @@ static func performer_after(project, graph, seed_, begin, past, cues, moods):
 		seed_,
 		stance,
 		moods,
+		track,
 		past.free_,
 		past.free_,
 		past.uses.duplicate(),
 		past.recent.duplicate(),
 		past.ended.duplicate()
 	)
+	var found = []
+	for a in graph.actions.values():
+		if a.kind == "gesture":
+			found.append(a)
+	out.beats = Director.beat_interval(graph.layer, found.size())
 	for cue in cues:
 		out.note(cue, cue.then if graph.stances.has(cue.then) else begin)
 	return out

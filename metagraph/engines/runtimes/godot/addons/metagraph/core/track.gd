@@ -5,6 +5,7 @@
 const Items = preload("items.gd")
 const Mood = preload("mood.gd")
 const Util = preload("util.gd")
+const HUSHED = 1.5  # seconds after what was said is broken off in which the models begin nothing
 
 
 # All lasting requests, each kind sorted by start. Speeches do not overlap.
@@ -66,6 +67,18 @@ class Track:
 				break
 		var last = first
 		return last != null and last.on and seconds < last.end
+
+	# Return whether what was said was broken off shortly before a time, and nothing is said since: then the models begin nothing.
+	func hushed_at(seconds):
+		var found = []
+		for s in self.speeches:
+			found.append(s.start)
+		var place = Util.right_of(found, seconds) - 1
+		if place < 0 or self.speeches[place].length == null:
+			return false
+		var last = self.speeches[place]
+		var silent = last.end if last.over == null else Util.most(last.end, last.over)
+		return last.end <= seconds and seconds < silent + HUSHED
 
 	# Return the mode requested at a time, or talking while something is said; None if neither applies.
 	func told_mode(seconds):
@@ -238,7 +251,11 @@ class Track:
 				stays[x.layer] = n
 		var found3 = []
 		for x in self.speeches:
-			if (x.start > seconds or x.end > seconds or (x.more and lasts.has(x.id)) or (x.over != null and x.over > seconds)):
+			if (x.start > seconds
+				or x.end > seconds
+				or (x.more and lasts.has(x.id))
+				or (x.over != null and x.over > seconds - HUSHED)
+				or (x.length != null and x.end > seconds - HUSHED)):
 				found3.append(x)
 		var found4 = []
 		for n in range(self.places.size()):
