@@ -641,10 +641,11 @@ class Performer:
             return home if returns else list(candidates)
         share = variety if now < self.acted + LONG_REST * variety else variety * SHORTER
         reminded = self._shown(now - APART * variety)
+        converses = meta.request.kind == "fidget" and mode_at(self.track, now) != "idle"
         out: list[Action] = []
         for action in candidates:
             shows = measure_prominence(self.project, action)
-            if reminded and shows >= STANDS_OUT:
+            if (reminded or converses) and shows >= STANDS_OUT:
                 continue
             needed = repeat_interval(action.kind, shows, self.beats) * share
             if action.id not in self.ended or now >= self.ended[action.id] + needed:

@@ -288,7 +288,7 @@ class Sampler:
         return float(variety * (b * (360.0 / b) ** p if action["kind"] == "gesture" else 300.0 * 2.0**p))
 
     def rested(self, meta: Meta, every: list[dict[str, Any]], now: float) -> list[dict[str, Any]]:
-        """ "Variety": what the model may do."""
+        """ "Variety": what the model may do; nobody said a mode, so it idles."""
         variety = self.planner["variety"]
         if meta.kind == "transition":
             moves = [c["end"] for c in self.cues if self.actions[c["action"]]["kind"] == "transition"]

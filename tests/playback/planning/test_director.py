@@ -79,6 +79,17 @@ def test_what_stands_out_is_not_followed_by_another_that_does(sample: Project) -
     assert len(shown) > 5 and all(b.start >= a.end + APART - 1e-6 for a, b in pairwise(shown))
 
 
+def test_nobody_looks_at_the_watch_in_a_conversation(sample: Project) -> None:
+    def shown(mode: Any) -> int:
+        fidgets = [
+            c for seed in range(3) for c in cues(sample, "arms", mode, seed) if c.action.kind == "fidget"
+        ]
+        assert len(fidgets) > 10
+        return sum(measure_prominence(sample, c.action) >= STANDS_OUT for c in fidgets)
+
+    assert shown("idle") > 3 and shown("talking") == shown("listening") == 0
+
+
 def test_a_stance_is_kept_before_the_model_leaves_it(sample: Project) -> None:
     for layer in LAYERS:
         moves = [c for c in cues(sample, layer, "idle") if c.action.kind == "transition"]

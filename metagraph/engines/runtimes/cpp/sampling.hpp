@@ -1141,10 +1141,11 @@ inline List<Ref<Action>> Performer::_fresh(
     }
     double share = now < this->acted + director::LONG_REST * variety ? variety : variety * director::SHORTER;
     bool reminded = this->_shown(now - director::APART * variety);
+    bool converses = meta->request->kind == "fidget" && wanted::mode_at(this->track, now) != "idle";
     List<Ref<Action>> out;
     for (const auto& action : candidates) {
         double shows = prominence::measure_prominence(this->project, action);
-        if (reminded && shows >= director::STANDS_OUT) {
+        if ((reminded || converses) && shows >= director::STANDS_OUT) {
             continue;
         }
         double needed = director::repeat_interval(action->kind, shows, this->beats) * share;

@@ -772,10 +772,11 @@ export class Performer {
     }
     const share = now < this.acted + LONG_REST * variety ? variety : variety * SHORTER;
     const reminded = this.shown(now - APART * variety);
+    const converses = meta.request.kind === "fidget" && modeAt(this.track, now) !== "idle";
     const out = [];
     for (const action of candidates) {
       const shows = measureProminence(this.project, action);
-      if (reminded && shows >= STANDS_OUT) {
+      if ((reminded || converses) && shows >= STANDS_OUT) {
         continue;
       }
       const needed = repeatInterval(action.kind, shows, this.beats) * share;

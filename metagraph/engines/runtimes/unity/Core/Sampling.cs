@@ -952,11 +952,12 @@ namespace Metagraph
             }
             var share = now < Acted + DirectorRules.LongRest * variety ? variety : variety * DirectorRules.Shorter;
             var reminded = Shown(now - DirectorRules.Apart * variety);
+            var converses = meta.Request.Kind == "fidget" && WantedRules.ModeAt(Track, now) != "idle";
             var out_ = new List<GraphAction>();
             foreach (GraphAction action in candidates)
             {
                 var shows = ProminenceRules.MeasureProminence(Project, action);
-                if (reminded && shows >= DirectorRules.StandsOut)
+                if ((reminded || converses) && shows >= DirectorRules.StandsOut)
                 {
                     continue;
                 }

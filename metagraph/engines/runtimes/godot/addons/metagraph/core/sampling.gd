@@ -726,10 +726,11 @@ class Performer:
 			return home if returns else Util.list(candidates)
 		var share = variety if now < self.acted + Director.LONG_REST * variety else variety * Director.SHORTER
 		var reminded = self._shown(now - Director.APART * variety)
+		var converses = meta.request.kind == "fidget" and Wanted.mode_at(self.track, now) != "idle"
 		var out = []
 		for action in candidates:
 			var shows = Prominence.measure_prominence(self.project, action)
-			if reminded and shows >= Director.STANDS_OUT:
+			if (reminded or converses) and shows >= Director.STANDS_OUT:
 				continue
 			var needed = Director.repeat_interval(action.kind, shows, self.beats) * share
 			if not self.ended.has(action.id) or now >= self.ended[action.id] + needed:
