@@ -481,6 +481,7 @@ class Performer:
             again = self.recent.get(here, ())[-1:]
             if not any(a.id not in again for a in exact):
                 exact = found if any(a.id not in again for a in found) else every
+        exact = self._modest(meta, exact, now)
         if len(exact) == 0:
             name = graph.stances[self.stance].name
             asked = " ".join([*request.tags, request.kind])
@@ -651,6 +652,19 @@ class Performer:
             if action.id not in self.ended or now >= self.ended[action.id] + needed:
                 out.append(action)
         return out
+
+    def _modest(self, meta: MetaAction, candidates: Sequence[Action], now: float) -> list[Action]:
+        """Return the candidates for a requested fidget in a conversation without those that stand out, if
+        others are left and no tags are requested; else all.
+        """
+        request = meta.request
+        every = list(candidates)
+        if request.kind != "fidget" or len(request.tags) > 0 or self.project.settings.variety <= 0:
+            return every
+        if meta.written or mode_at(self.track, now) == "idle":
+            return every
+        left = [a for a in every if measure_prominence(self.project, a) < STANDS_OUT]
+        return left if len(left) > 0 else every
 
     def _moves_on(self, meta: MetaAction, now: float) -> list[Action]:
         """Return the transitions of the arms that may play for a gesture where all gestures of the stance

@@ -90,6 +90,25 @@ def test_nobody_looks_at_the_watch_in_a_conversation(sample: Project) -> None:
     assert shown("idle") > 3 and shown("talking") == shown("listening") == 0
 
 
+def test_a_fidget_that_is_asked_for_in_a_conversation_is_one_that_hardly_shows(sample: Project) -> None:
+    def shown(name: Any, **more: Any) -> list[bool]:
+        asks = [make_request({"do": "mode", "mode": name, "id": "mode", "at": 0.0})]
+        for n in range(30):
+            asked = {"do": "fidget", "layer": "arms", "id": f"f{n}", "at": 8.0 * n, **more}
+            asks.append(make_request(asked))
+        played = plan_performance(sample, asks, 250.0, 1, idle=False).layers["arms"].cues
+        assert len(played) == 30
+        return [measure_prominence(sample, c.action) >= STANDS_OUT for c in played]
+
+    assert any(shown("idle")) and not any(shown("listening"))
+    tags = next(
+        a.tags
+        for a in sample.graphs["arms"].of(sample.graphs["arms"].start or "", "fidget")
+        if a.tags and measure_prominence(sample, a) >= STANDS_OUT
+    )
+    assert any(shown("listening", tags=list(tags))), "what is asked for by a tag is done"
+
+
 def test_a_stance_is_kept_before_the_model_leaves_it(sample: Project) -> None:
     for layer in LAYERS:
         moves = [c for c in cues(sample, layer, "idle") if c.action.kind == "transition"]

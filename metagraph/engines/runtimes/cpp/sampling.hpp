@@ -224,6 +224,10 @@ struct Performer {
     /// Return the actions that the character may do by itself; see `director`.
     List<Ref<Action>> _fresh(const Ref<MetaAction>& meta, const List<Ref<Action>>& candidates, double now);
 
+    /// Return the candidates for a requested fidget in a conversation without those that stand out, if others are left
+    /// and no tags are requested; else all.
+    List<Ref<Action>> _modest(const Ref<MetaAction>& meta, const List<Ref<Action>>& candidates, double now);
+
     /// Return the transitions of the arms that may play for a gesture where all gestures of the stance have played too
     /// recently, and others of another stance have not.
     List<Ref<Action>> _moves_on(const Ref<MetaAction>& meta, double now);
@@ -903,6 +907,7 @@ inline std::optional<List<Ref<SamplingStep>>> Performer::_steps(const Ref<MetaAc
             exact = is_any2 ? found : every;
         }
     }
+    exact = this->_modest(meta, exact, now);
     if (lang::len(exact) == 0) {
         std::string name = graph->stances.at(this->stance)->name;
         std::string asked = lang::joined(lang::together(request->tags, List<std::string>{request->kind}), " ");
@@ -1154,6 +1159,28 @@ inline List<Ref<Action>> Performer::_fresh(
         }
     }
     return out;
+}
+
+inline List<Ref<Action>> Performer::_modest(
+    const Ref<MetaAction>& meta,
+    const List<Ref<Action>>& candidates,
+    double now
+) {
+    Ref<MetaRequest> request = meta->request;
+    List<Ref<Action>> every = candidates;
+    if (request->kind != "fidget" || lang::len(request->tags) > 0 || this->project->settings->variety <= 0) {
+        return every;
+    }
+    if (meta->written || wanted::mode_at(this->track, now) == "idle") {
+        return every;
+    }
+    List<Ref<Action>> left;
+    for (const auto& a : every) {
+        if (prominence::measure_prominence(this->project, a) < director::STANDS_OUT) {
+            left.push_back(a);
+        }
+    }
+    return lang::len(left) > 0 ? left : every;
 }
 
 inline List<Ref<Action>> Performer::_moves_on(const Ref<MetaAction>& meta, double now) {

@@ -577,6 +577,7 @@ export class Performer {
         exact = found.some((a) => !again.includes(a.id)) ? found : every;
       }
     }
+    exact = this.modest(meta, exact, now);
     if (exact.length === 0) {
       const name = graph.stances.get(this.stance).name;
       let asked = [...request.tags, request.kind].join(" ");
@@ -785,6 +786,23 @@ export class Performer {
       }
     }
     return out;
+  }
+
+  /**
+   * Return the candidates for a requested fidget in a conversation without those that stand out, if others are left and no
+   * tags are requested; else all.
+   */
+  modest(meta, candidates, now) {
+    const request = meta.request;
+    const every = [...candidates];
+    if (request.kind !== "fidget" || request.tags.length > 0 || this.project.settings.variety <= 0) {
+      return every;
+    }
+    if (meta.written || modeAt(this.track, now) === "idle") {
+      return every;
+    }
+    const left = every.filter((a) => measureProminence(this.project, a) < STANDS_OUT);
+    return left.length > 0 ? left : every;
   }
 
   /**

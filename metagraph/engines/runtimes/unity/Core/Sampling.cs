@@ -715,6 +715,7 @@ namespace Metagraph
                     exact = found.Any(a => !again.Contains(a.Id)) ? found : every;
                 }
             }
+            exact = Modest(meta, exact, now);
             if (exact.Count == 0)
             {
                 var name = graph.Stances[Stance].Name;
@@ -968,6 +969,26 @@ namespace Metagraph
                 }
             }
             return out_;
+        }
+
+        /// <summary>
+        /// Return the candidates for a requested fidget in a conversation without those that stand out, if others are left and no
+        /// tags are requested; else all.
+        /// </summary>
+        public List<GraphAction> Modest(MetaAction meta, List<GraphAction> candidates, double now)
+        {
+            var request = meta.Request;
+            var every = candidates.ToList();
+            if (request.Kind != "fidget" || request.Tags.Count > 0 || Project.Settings.Variety <= 0)
+            {
+                return every;
+            }
+            if (meta.Written || WantedRules.ModeAt(Track, now) == "idle")
+            {
+                return every;
+            }
+            var left = every.Where(a => ProminenceRules.MeasureProminence(Project, a) < DirectorRules.StandsOut).ToList();
+            return left.Count > 0 ? left : every;
         }
 
         /// <summary>

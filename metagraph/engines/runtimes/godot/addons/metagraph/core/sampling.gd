@@ -551,6 +551,7 @@ class Performer:
 						is_any2 = true
 						break
 				exact = found if is_any2 else every
+		exact = self._modest(meta, exact, now)
 		if exact.size() == 0:
 			var name = graph.stances[self.stance].name
 			var asked = Util.joined(request.tags + [request.kind], " ")
@@ -736,6 +737,21 @@ class Performer:
 			if not self.ended.has(action.id) or now >= self.ended[action.id] + needed:
 				out.append(action)
 		return out
+
+	# Return the candidates for a requested fidget in a conversation without those that stand out, if others are left and no tags
+	# are requested; else all.
+	func _modest(meta, candidates, now):
+		var request = meta.request
+		var every = Util.list(candidates)
+		if request.kind != "fidget" or request.tags.size() > 0 or self.project.settings.variety <= 0:
+			return every
+		if meta.written or Wanted.mode_at(self.track, now) == "idle":
+			return every
+		var left = []
+		for a in every:
+			if Prominence.measure_prominence(self.project, a) < Director.STANDS_OUT:
+				left.append(a)
+		return left if left.size() > 0 else every
 
 	# Return the transitions of the arms that may play for a gesture where all gestures of the stance have played too recently,
 	# and others of another stance have not.
