@@ -249,20 +249,22 @@ class CommandRunner:
                 (self.runtime / edit.path).write_text(before, encoding="utf-8")
 
     def _commands(self) -> list[list[str]]:
-        folders = [str(f) for f in vector_folders()]
+        """The folder that notices most comes first, so that most changes cost a tenth of all vectors."""
+        every = sorted(vector_folders(), key=lambda folder: folder.name != "stick")
+        parts = [[str(f) for f in part] for part in (every[:1], every[1:]) if part]
         if self.language == "csharp":
             sources = [
                 str(p) for part in ("Core", "Conformance") for p in (self.runtime / part).rglob("*.cs")
             ]
             program = str(self.folder / "conformance.exe")
             compiler = ["mcs", "-langversion:7.2", "-nowarn:0162,0219,0414,0168,1717,1718", f"-out:{program}"]
-            return [[*compiler, *sources], ["mono", program, *folders]]
+            return [[*compiler, *sources], *(["mono", program, *part] for part in parts)]
         if self.language == "gdscript":
             engine = ["godot3-server", "--no-window", "--path", str(self.folder), "-s"]
-            return [[*engine, "addons/metagraph/conformance.gd", *folders]]
+            return [[*engine, "addons/metagraph/conformance.gd", *part] for part in parts]
         program = str(self.folder / "conformance")
         compiler = ["g++", "-std=c++17", "-O0", "-w", "-o", program, str(self.runtime / "conformance.cpp")]
-        return [compiler, [program, *folders]]
+        return [compiler, *([program, *part] for part in parts)]
 
     def _run(self, command: list[str]) -> tuple[int, str]:
         process = subprocess.Popen(
