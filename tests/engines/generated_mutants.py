@@ -56,15 +56,15 @@ LANGUAGES = {
         ".js",
         (
             "character.js", "describe.js", "glb.js", "graph.js", "three.js", "index.js", "words.js",
-            "basics.js",
+            "basics.js", "avatar", "element.js", "stage.js", "sounds.js",
         ),
     ),
     "csharp": Language(
         "unity",
         ".cs",
         (
-            "Unity/", "Conformance/", "Character.cs", "Describe.cs", "Glb.cs", "Graph.cs", "Json.cs",
-            "Loading", "SharedGraphs", "Basics.cs", "Language.cs", "LifeSettings.cs", "Clip.cs",
+            "Component/", "Editor/", "Tests/", "Samples~/", "Character.cs", "Describe.cs", "Glb.cs",
+            "Graph.cs", "Json.cs", "Loading", "SharedGraphs", "Basics.cs", "Language.cs", "LifeSettings.cs", "Clip.cs",
         ),
     ),
     "gdscript": Language(
@@ -254,7 +254,7 @@ class CommandRunner:
         parts = [[str(f) for f in part] for part in (every[:1], every[1:]) if part]
         if self.language == "csharp":
             sources = [
-                str(p) for part in ("Core", "Conformance") for p in (self.runtime / part).rglob("*.cs")
+                str(p) for part in ("Runtime/Core", "Tests") for p in (self.runtime / part).rglob("*.cs")
             ]
             program = str(self.folder / "conformance.exe")
             compiler = ["mcs", "-langversion:7.2", "-nowarn:0162,0219,0414,0168,1717,1718", f"-out:{program}"]

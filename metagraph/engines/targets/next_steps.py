@@ -93,11 +93,13 @@ STEPS: Mapping[str, NextSteps] = {
     ),
     "unity": NextSteps(
         (
-            phrase("Copy 'Metagraph' into the Packages folder of your Unity project."),
-            phrase("Import '{stem}.glb' with glTFast or UnityGLTF, and put it into the scene."),
             phrase(
-                "Add the component MetagraphCharacter to it, and give it the JSON and the GLB as .glb.bytes."
+                "Copy 'Metagraph' into the Packages folder of your Unity project, and all else into Assets."
             ),
+            phrase(
+                "Put '{stem}.glb' into the scene. Unity imports it with the package glTFast or UnityGLTF."
+            ),
+            phrase("Add the component MetagraphCharacter to it. It finds its files. Press Play."),
         ),
         "engines/unity",
         "csharp",

@@ -12,6 +12,7 @@ from metagraph.common.wording import phrase
 from metagraph.engines.export import AIFF, OGG_AND_MP3, WAV, Imported, LineSounds, write_project_files
 from metagraph.engines.targets.godot_scene import MOTION, write_godot_scene
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
+from metagraph.engines.targets.unity_package import write_package_metas
 from metagraph.errors import FileError
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
@@ -69,11 +70,9 @@ def copy_runtime(source: Path, target: Path, leave: tuple[str, ...] = ()) -> lis
     return out
 
 
-def _with(
-    runtime: str, under: str, imported: Imported | None = None
-) -> Callable[[ExportOrder], ExportedFiles]:
+def _with(runtime: str, under: str) -> Callable[[ExportOrder], ExportedFiles]:
     def write(order: ExportOrder) -> ExportedFiles:
-        made = write_with_sounds(order, imported)
+        made = write_with_sounds(order)
         return ExportedFiles(
             (*made.files, *copy_runtime(RUNTIMES / runtime, order.folder / under)), made.notes
         )
@@ -93,6 +92,15 @@ def _godot(order: ExportOrder) -> ExportedFiles:
     made = write_with_sounds(order, WAV | OGG_AND_MP3)
     files = [_copy_glb(order, MOTION), *write_godot_scene(order.project, order.folder, order.stem)]
     return ExportedFiles((*made.files, *files, *copy_runtime(RUNTIMES / "godot", order.folder)), made.notes)
+
+
+def _unity(order: ExportOrder) -> ExportedFiles:
+    """Write the export and a package whose files have their `.meta`."""
+    made = write_with_sounds(order, WAV | OGG_AND_MP3 | AIFF)
+    package = order.folder / "Metagraph"
+    files = copy_runtime(RUNTIMES / "unity", package)
+    metas = write_package_metas(package, files)
+    return ExportedFiles((*made.files, _copy_glb(order, ".glb.bytes"), *files, *metas), made.notes)
 
 
 PLUGIN = "Plugins/Metagraph"  # where Unreal looks for a project's plugins
@@ -139,7 +147,7 @@ TARGETS = (
         "unity",
         phrase("Unity package"),
         phrase("JSON, GLB and the C# runtime in Metagraph/"),
-        _with("unity", "Metagraph", WAV | OGG_AND_MP3 | AIFF),
+        _unity,
         (BML,),
         untried=phrase("compiled and tested outside Unity; not tested in Unity"),
         group=phrase("Same playback as the preview"),
