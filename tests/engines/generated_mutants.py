@@ -64,7 +64,8 @@ LANGUAGES = {
         ".cs",
         (
             "Component/", "Editor/", "Tests/", "Samples~/", "Character.cs", "Describe.cs", "Glb.cs",
-            "Graph.cs", "Json.cs", "Loading", "SharedGraphs", "Basics.cs", "Language.cs", "LifeSettings.cs", "Clip.cs",
+            "Graph.cs", "Json.cs", "Loading", "SharedGraphs", "Basics.cs", "Language.cs",
+            "LifeSettings.cs", "Clip.cs",
         ),
     ),
     "gdscript": Language(
