@@ -139,10 +139,11 @@ def write_project_files(
     voices: LineSounds | None = None,
     compress: bool = False,
     base: Path | None = None,
+    pretty: bool = False,
 ) -> Exported:
     """Write a project that has clips without checking it for errors. The arguments are those of
     `export_project`. `voices` are copied into `lines/`, if they are given. `base` is the folder that the
-    props' paths are relative to, None to leave them out.
+    props' paths are relative to, None to leave them out. `pretty` breaks and indents the JSON, for people.
     """
     project = make_writable(project)
     tell = progress or (lambda done, total, words: None)
@@ -160,7 +161,8 @@ def write_project_files(
     document.exporter = f"Metagraph {__version__}"
     sounds, missing = _sounds(document, target, voices) if voices is not None else ((), ())
     tell(2, 3, "writing")
-    write_atomically(json, msgspec.json.format(msgspec.json.encode(document), indent=1))
+    text = msgspec.json.encode(document)
+    write_atomically(json, msgspec.json.format(text, indent=1) if pretty else text + b"\n")
     tell(3, 3, "done")
     return Exported(json, glb, len(used), (*notes, *missing), sounds)
 

@@ -105,7 +105,10 @@ def main() -> None:
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
         made = write_project_files(
-            project, folder, character=_face(project, project.face.morphs) if project.face.morphs else None
+            project,
+            folder,
+            character=_face(project, project.face.morphs) if project.face.morphs else None,
+            pretty=True,
         )
         without_version(made.json)
         if project.name == "varied":

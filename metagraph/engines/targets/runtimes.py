@@ -35,6 +35,7 @@ def write_with_sounds(order: ExportOrder, imported: Imported | None = None) -> E
         voices,
         given.compress,
         given.base,
+        given.pretty,
     )
     return ExportedFiles((made.json, made.glb, *made.sounds), made.warnings)
 
