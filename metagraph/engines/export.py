@@ -139,11 +139,10 @@ def write_project_files(
     voices: LineSounds | None = None,
     compress: bool = False,
     base: Path | None = None,
-    pretty: bool = False,
 ) -> Exported:
     """Write a project that has clips without checking it for errors. The arguments are those of
     `export_project`. `voices` are copied into `lines/`, if they are given. `base` is the folder that the
-    props' paths are relative to, None to leave them out. `pretty` breaks and indents the JSON, for people.
+    props' paths are relative to, None to leave them out.
     """
     project = make_writable(project)
     tell = progress or (lambda done, total, words: None)
@@ -161,10 +160,14 @@ def write_project_files(
     document.exporter = f"Metagraph {__version__}"
     sounds, missing = _sounds(document, target, voices) if voices is not None else ((), ())
     tell(2, 3, "writing")
-    text = msgspec.json.encode(document)
-    write_atomically(json, msgspec.json.format(text, indent=1) if pretty else text + b"\n")
+    write_atomically(json, msgspec.json.encode(document) + b"\n")
     tell(3, 3, "done")
     return Exported(json, glb, len(used), (*notes, *missing), sounds)
+
+
+def indent_export(path: Path) -> None:
+    """Break and indent the JSON of an export that was written, for people; it is more than twice as large."""
+    write_atomically(path, msgspec.json.format(path.read_bytes(), indent=1))
 
 
 def _sounds(document: c.Export, folder: Path, voices: LineSounds) -> tuple[tuple[Path, ...], tuple[str, ...]]:

@@ -105,10 +105,7 @@ def main() -> None:
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
         made = write_project_files(
-            project,
-            folder,
-            character=_face(project, project.face.morphs) if project.face.morphs else None,
-            pretty=True,
+            project, folder, character=_face(project, project.face.morphs) if project.face.morphs else None
         )
         without_version(made.json)
         if project.name == "varied":

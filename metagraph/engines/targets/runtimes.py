@@ -9,7 +9,15 @@ from pathlib import Path
 
 from metagraph import engines
 from metagraph.common.wording import phrase
-from metagraph.engines.export import AIFF, OGG_AND_MP3, WAV, Imported, LineSounds, write_project_files
+from metagraph.engines.export import (
+    AIFF,
+    OGG_AND_MP3,
+    WAV,
+    Imported,
+    LineSounds,
+    indent_export,
+    write_project_files,
+)
 from metagraph.engines.targets.godot_scene import MOTION, write_godot_scene
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.engines.targets.unity_package import write_package_metas
@@ -35,8 +43,9 @@ def write_with_sounds(order: ExportOrder, imported: Imported | None = None) -> E
         voices,
         given.compress,
         given.base,
-        given.pretty,
     )
+    if given.pretty:
+        indent_export(made.json)
     return ExportedFiles((made.json, made.glb, *made.sounds), made.warnings)
 
 
