@@ -116,7 +116,7 @@ export class ContactPose {
 export function spread(rig, pose) {
   pose.turned = [];
   pose.at = [];
-  for (const [place, turn] of pose.local.entries()) {
+  for (const { 0: place, 1: turn } of pose.local.entries()) {
     pose.turned.push(turn);
     pose.at.push(pose.moved[place]);
   }
@@ -212,13 +212,13 @@ function _hold(rig, pose, goals, side, wrist, hand) {
   let b = 0;
   let c = 0;
   let d = 0;
-  const [hx, hy, hz, hw] = hand;
+  const { 0: hx, 1: hy, 2: hz, 3: hw } = hand;
   let k;
   for (const goal of goals) {
     if (goal.arm === side && goal.weight > 0) {
       k = goal.weight;
-      const [px, py, pz] = plus(pose.at[goal.to], rotated(pose.turned[goal.to], goal.at));
-      const [qx, qy, qz, qw] = times(pose.turned[goal.to], goal.turn);
+      const { 0: px, 1: py, 2: pz } = plus(pose.at[goal.to], rotated(pose.turned[goal.to], goal.at));
+      const { 0: qx, 1: qy, 2: qz, 3: qw } = times(pose.turned[goal.to], goal.turn);
       x = x + k * px;
       y = y + k * py;
       z = z + k * pz;
@@ -235,7 +235,7 @@ function _hold(rig, pose, goals, side, wrist, hand) {
   const weight = Math.min(1, total);
   const mean = [x / total, y / total, z / total];
   let turn = _withinWrist(hand, unitTurn([a, b, c, d]));
-  const [tx, ty, tz, tw] = turn;
+  const { 0: tx, 1: ty, 2: tz, 3: tw } = turn;
   const rest = 1 - weight;
   k = tx * hx + ty * hy + tz * hz + tw * hw < 0 ? -weight : weight;
   turn = unitTurn([hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k]);
@@ -249,7 +249,7 @@ function _hold(rig, pose, goals, side, wrist, hand) {
  * @returns {[number, number, number, number]}
  */
 function _withinWrist(hand, turn) {
-  let [x, y, z, w] = times(turn, back(hand));
+  let { 0: x, 1: y, 2: z, 3: w } = times(turn, back(hand));
   if (w < 0) {
     x = -x;
     y = -y;
@@ -353,7 +353,7 @@ function _guarded(rig, pose, held, across) {
     let found = false;
     const first = number === 0;
     const shifts = range(rig.arms.length).map((side) => _shift(rig, ends, balls, side, held, across, whole, first));
-    for (const [side, shift] of shifts.entries()) {
+    for (const { 0: side, 1: shift } of shifts.entries()) {
       if (length(shift) > 0) {
         const hand = rig.arms[side].hand;
         bring(rig, pose, side, plus(pose.at[hand], shift), pose.turned[hand], STRAIGHT);
@@ -370,7 +370,7 @@ function _guarded(rig, pose, held, across) {
     pose.local = local;
     pose.turned = turned;
     pose.at = at;
-    for (const [side, arm] of rig.arms.entries()) {
+    for (const { 0: side, 1: arm } of rig.arms.entries()) {
       const way = minus(goals[side], pose.at[arm.hand]);
       if (length(way) > 0) {
         const goal = plus(pose.at[arm.hand], scaled(way, whole[side]));
@@ -404,9 +404,9 @@ export function capsuleEnds(rig, pose) {
  */
 function _balls(rig, ends) {
   const out = [];
-  for (const [n, capsule] of rig.capsules.entries()) {
-    const [ax, ay, az] = ends[2 * n];
-    const [bx, by, bz] = ends[2 * n + 1];
+  for (const { 0: n, 1: capsule } of rig.capsules.entries()) {
+    const { 0: ax, 1: ay, 2: az } = ends[2 * n];
+    const { 0: bx, 1: by, 2: bz } = ends[2 * n + 1];
     const x = bx - ax;
     const y = by - ay;
     const z = bz - az;
@@ -435,17 +435,17 @@ function _shift(rig, ends, balls, side, held, across, whole, first) {
   if (own <= 0) {
     return shift;
   }
-  for (const [i, mine] of rig.capsules.entries()) {
+  for (const { 0: i, 1: mine } of rig.capsules.entries()) {
     if (mine.arm !== side || mine.kind === OBSTACLE) {
       continue;
     }
-    const [mx, my, mz, size] = balls[i];
+    const { 0: mx, 1: my, 2: mz, 3: size } = balls[i];
     for (let k = 0; k < rig.capsules.length; k++) {
       const other = rig.capsules[k];
       if (other.arm === side) {
         continue;
       }
-      const [ox, oy, oz, most] = balls[k];
+      const { 0: ox, 1: oy, 2: oz, 3: most } = balls[k];
       const reach = most + size;
       if ((ox - mx) * (ox - mx) + (oy - my) * (oy - my) + (oz - mz) * (oz - mz) >= reach * reach) {
         continue; // most are nowhere near
@@ -460,7 +460,7 @@ function _shift(rig, ends, balls, side, held, across, whole, first) {
       if (share <= 0) {
         continue;
       }
-      const [x, y, z, gap] = apart(ends, 2 * i, 2 * k);
+      const { 0: x, 1: y, 2: z, 3: gap } = apart(ends, 2 * i, 2 * k);
       const radii = mine.radius + other.radius;
       if (gap >= radii || gap < 1e-09) {
         continue;
@@ -557,6 +557,6 @@ export function apart(ends, i, k) {
   } else if (vv > 1e-12) {
     t = Math.min(Math.max(vw / vv, 0), 1);
   }
-  const [x, y, z] = minus(plus(w, scaled(u, s)), scaled(v, t));
+  const { 0: x, 1: y, 2: z } = minus(plus(w, scaled(u, s)), scaled(v, t));
   return [x, y, z, Math.sqrt(x * x + y * y + z * z)];
 }
