@@ -178,8 +178,8 @@ class JavaScript(Braces):
             self.line(("(", names, " = ", value, ");"), node.beside)
 
     def taken(self, names: list[str]) -> str:
-        """Return what takes the items of an array apart. By their places: to go over an array as `[a, b]` does
-        makes an object for each.
+        """Return what takes the items of an array apart, by their places: `[a, b]` would make an object for
+        each.
         """
         return "{ " + ", ".join(f"{n}: {name}" for n, name in enumerate(names) if name) + " }"
 
