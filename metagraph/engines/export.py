@@ -165,7 +165,7 @@ def write_project_files(
     return Exported(json, glb, len(used), (*notes, *missing), sounds)
 
 
-def indent_export(path: Path) -> None:
+def write_indented_export(path: Path) -> None:
     """Break and indent the JSON of an export that was written, for people; it is more than twice as large."""
     write_atomically(path, msgspec.json.format(path.read_bytes(), indent=1))
 

@@ -1,9 +1,10 @@
 """Generated mutants: one operator, number or word of a runtime changed at a time, and whether the conformance
 vectors notice: `python -m tests.engines.generated_mutants javascript --count 400`.
 
-What a vector cannot see is not changed: texts, messages, files that read files, an engine's own scenes; and
-what changes nothing: sizes of buffers, how far they are filled or copied (what is behind is overwritten or
-never read), usual values of parameters that are always given, numbers too small to divide by.
+What a vector cannot see is not changed: texts, messages, files that read files (packed ones have tests of their
+own), an engine's own scenes; and what changes nothing: sizes of buffers, how far they are filled or copied (what
+is behind is overwritten or never read), usual values of parameters that are always given, numbers too small to
+divide by.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ LANGUAGES = {
         ".js",
         (
             "character.js", "describe.js", "glb.js", "graph.js", "three.js", "index.js", "words.js",
-            "basics.js", "avatar", "element.js", "stage.js", "sounds.js",
+            "basics.js", "avatar", "element.js", "stage.js", "sounds.js", "meshopt",
         ),
     ),
     "csharp": Language(
@@ -64,7 +65,7 @@ LANGUAGES = {
         ".cs",
         (
             "Component/", "Editor/", "Tests/", "Samples~/", "Character.cs", "Describe.cs", "Glb.cs",
-            "Graph.cs", "Json.cs", "Loading", "SharedGraphs", "Basics.cs", "Language.cs",
+            "Graph.cs", "Json.cs", "Loading", "Meshopt", "SharedGraphs", "Basics.cs", "Language.cs",
             "LifeSettings.cs", "Clip.cs",
         ),
     ),
@@ -83,7 +84,7 @@ LANGUAGES = {
         ".hpp",
         (
             "language.hpp", "json.hpp", "glb.hpp", "graph.hpp", "loading", "describe", "character.hpp",
-            "clip", "conformance", "table",
+            "clip", "conformance", "table", "meshopt",
         ),
     ),
 }  # fmt: skip

@@ -15,7 +15,7 @@ from metagraph.engines.export import (
     WAV,
     Imported,
     LineSounds,
-    indent_export,
+    write_indented_export,
     write_project_files,
 )
 from metagraph.engines.targets.godot_scene import MOTION, write_godot_scene
@@ -45,7 +45,7 @@ def write_with_sounds(order: ExportOrder, imported: Imported | None = None) -> E
         given.base,
     )
     if given.pretty:
-        indent_export(made.json)
+        write_indented_export(made.json)
     return ExportedFiles((made.json, made.glb, *made.sounds), made.warnings)
 
 
