@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Set up and start Metagraph: `python3 run.py`. Test it: `python3 run.py test`. Needs Python 3.11 to 3.13 and
+"""Set up and start Metagraph: `python3 run.py`. Test it: `python3 run.py test`. Needs Python 3.11 to 3.14 and
 nothing else.
 
 Makes `.venv`, installs the pinned dependencies into it, installs missing system libraries on Debian and
@@ -56,8 +56,8 @@ PLACES = ("/usr/local/sbin", "/usr/local/bin", "/usr/sbin", "/usr/bin", "/sbin",
 
 
 def main(arguments):
-    if not (3, 11) <= sys.version_info[:2] <= (3, 13):
-        return f"Python 3.11, 3.12 or 3.13 is needed, this is {sys.version_info[0]}.{sys.version_info[1]}."
+    if not (3, 11) <= sys.version_info[:2] <= (3, 14):
+        return f"Python 3.11 to 3.14 is needed, this is {sys.version_info[0]}.{sys.version_info[1]}."
     if arguments == ["install"]:
         return environment(1)
     testing = arguments[:1] == ["test"]

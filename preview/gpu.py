@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import PICTURE_PIXELS
-from metagraph.common.pictures import read_picture_size
+from metagraph.common.pictures import holds_flat_colors, read_picture_size
 from preview.mesh import VERTEX, SkinnedMesh, TriangleBatch, arrange_vertices
 from preview.occlusion import Rods
 from preview.paint import remove_invisible_texture
@@ -24,7 +24,6 @@ Array = NDArray[Any]
 KEEP_MESHES = 16
 IDLE_FRAMES = 240
 TEXTURE_LIMIT = 2048
-PALETTE, NARROW = 128, 64  # pixels; textures up to this size, or so narrow, are palettes and need no mipmaps
 MARK_STRENGTH = 200  # of 255: how much a mark covers the figure's own colour
 
 # How shaders of each kind read the vertex (see mesh.VERTEX). Positions come from a buffer of their own.
@@ -222,8 +221,7 @@ class Store:
             return self._images[encoded]
         size, pixels = decode_texture(encoded)
         texture = self._ctx.texture(size, 4, pixels)
-        # Smaller pictures hold flat colours, and making mipmaps stalls drawing in software.
-        if repeats or (max(size) > PALETTE and min(size) > NARROW):
+        if repeats or not holds_flat_colors(size):  # to make mipmaps stalls drawing in software
             texture.build_mipmaps()
             texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
         self._images[encoded] = texture

@@ -92,7 +92,7 @@ def test_it_needs_nothing_but_python() -> None:
 
 @pytest.mark.parametrize(
     ("version", "fits"),
-    [((3, 10), False), ((3, 11), True), ((3, 13), True), ((3, 14), False), ((2, 7), False)],
+    [((3, 10), False), ((3, 11), True), ((3, 14), True), ((3, 15), False), ((2, 7), False)],
 )
 def test_the_wrong_python_is_refused_in_words(
     run: ModuleType, monkeypatch: pytest.MonkeyPatch, version: tuple[int, int], fits: bool

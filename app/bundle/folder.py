@@ -16,6 +16,7 @@ from tempfile import TemporaryDirectory
 
 from app.bundle.leftovers import PYTHON, SITE, STRIPPED, UNCOMPILED
 from app.bundle.libraries import add_libraries, set_search_path
+from app.project.menu_entry import DESKTOP
 from app.shell.update_check import ADDRESS, is_safe
 from metagraph.common.studio import ADDRESS as STUDIO
 
@@ -35,7 +36,8 @@ def make_folder(out: Path, tell: Tell = print, updates: str = "", studio: str = 
     """
     if updates and not is_safe(updates):
         raise ValueError(f"'{updates}' does not begin with https://")
-    folder = out / "metagraph"
+    # What ldd reports is compared with whole paths.
+    folder = out.resolve() / "metagraph"
     if folder.exists():
         shutil.rmtree(folder)
     tell("Copying Python")
@@ -66,13 +68,33 @@ def make_folder(out: Path, tell: Tell = print, updates: str = "", studio: str = 
         stripdir=str(folder),
         rx=re.compile(UNCOMPILED),
     )
-    for name in ("metagraph", "metagraph.desktop", "metagraph.xml"):
-        shutil.copy(LAUNCHER / name, folder)
-    shutil.copy(ROOT / "app" / "look" / "metagraph.svg", folder)
+    add_desktop_files(folder / DESKTOP)
+    shutil.copy(LAUNCHER / "README.txt", folder)
     shutil.copy(ROOT / "LICENSE", folder)
-    (folder / "metagraph").chmod(0o755)
-    subprocess.run([python, "-I", "-c", "import app.cli.parser"], check=True)
+    make_launcher(folder / "metagraph")
+    set_rights(folder)
+    # What was stripped must still load.
+    subprocess.run([python, "-I", "-c", f"import app.cli.parser, {', '.join(STRIPPED)}"], check=True)
     return folder
+
+
+def add_desktop_files(place: Path) -> None:
+    """Copy what a desktop's menu needs; in a folder below, where nobody takes it for the program."""
+    place.mkdir(parents=True)
+    for name in ("metagraph.desktop", "metagraph.xml"):
+        shutil.copy(LAUNCHER / name, place)
+    shutil.copy(ROOT / "app" / "look" / "metagraph.svg", place)
+
+
+def make_launcher(to: Path) -> None:
+    """Compile the program that starts a bundle. File managers take one at a fixed address (no-pie) for a
+    program, and others for a library. Raises FileNotFoundError without a C compiler.
+    """
+    compiler = shutil.which("cc")
+    if compiler is None:
+        raise FileNotFoundError("making a bundle needs a C compiler, on Debian or Ubuntu: apt install gcc")
+    source = LAUNCHER / "metagraph.c"
+    subprocess.run([compiler, "-O2", "-s", "-no-pie", "-fno-pie", "-o", str(to), str(source)], check=True)
 
 
 def find_site(folder: Path) -> Path:
@@ -124,6 +146,25 @@ def install_packages(site: Path) -> None:
             check=True,
             env={**os.environ, "PIP_ROOT_USER_ACTION": "ignore"},
         )
+    remove_source(site)
+
+
+def remove_source(site: Path) -> None:
+    """Remove where pip found Metagraph: a folder for the moment, which differs in each bundle."""
+    for path in site.glob("metagraph_studio-*.dist-info/direct_url.json"):
+        path.unlink()
+        record = path.with_name("RECORD")
+        lines = record.read_text("utf-8").splitlines(keepends=True)
+        kept = [line for line in lines if f"/{path.name}," not in line]
+        record.write_text("".join(kept), "utf-8")
+
+
+def set_rights(folder: Path) -> None:
+    """Give all files of a folder the rights that they have for anybody, whatever its maker's umask."""
+    for path in (folder, *folder.rglob("*")):
+        if not path.is_symlink():
+            runs = path.is_dir() or path.stat().st_mode & 0o100
+            path.chmod(0o755 if runs else 0o644)
 
 
 def remove_matches(folder: Path, patterns: tuple[str, ...]) -> None:

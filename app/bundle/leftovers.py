@@ -9,8 +9,8 @@ PYTHON = (
     "lib-dynload/readline*", "lib-dynload/_dbm*", "lib-dynload/_gdbm*",
 )  # fmt: skip
 
-# Folders of packages whose binaries have parts that only debuggers read: 25 MB of PyAV's 32.
-STRIPPED = ("av",)
+# Packages whose binaries have parts that only debuggers read: 25 MB of PyAV's 32, 10 MB of the others'.
+STRIPPED = ("av", "PIL", "ufbx", "yaml")
 # Packages that are not compiled beforehand, since only an extra's installation runs them.
 UNCOMPILED = r"[/\\]pip[/\\]"
 
@@ -28,7 +28,7 @@ SITE = (
         "qmltooling", "sqldrivers", "vectorimageformats", "wayland-graphics-integration-server",
         "platforms/libqeglfs.so", "platforms/libqlinuxfb.so", "platforms/libqminimal*.so",
         "platforms/libqvkkhrdisplay.so", "platforms/libqvnc.so", "imageformats/libqpdf.so",
-        "platformthemes/libqgtk3.so",
+        "platformthemes/libqgtk3.so", "platforminputcontexts/libqtvirtualkeyboardplugin.so",
     )),
     *(f"PySide6/Qt{name}.abi3.so" for name in (
         "Qml", "Quick", "QuickControls2", "QuickWidgets", "QuickTest", "Designer", "Help", "Sql", "Test",
@@ -43,6 +43,4 @@ SITE = (
         "assistant", "designer", "linguist", "qt", "qtdeclarative",
     )),
     "numpy/**/tests", "numpy/f2py", "numpy/distutils", "pyqtgraph/examples", "PIL/*.pyi",
-    # A format of pictures that no character has.
-    "PIL/_avif*.so", "pillow.libs/libavif*",
 )  # fmt: skip

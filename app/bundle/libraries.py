@@ -16,7 +16,7 @@ from pathlib import Path
 
 # Beginnings of names of libraries that are the system's.
 SYSTEM = (
-    "ld-linux", "libc.", "libm.", "libdl.", "libpthread.", "librt.", "libresolv.", "libutil.",
+    "ld-linux", "libc.", "libm.", "libdl.", "libpthread.", "librt.", "libmvec.", "libresolv.", "libutil.",
     "libnsl.", "libcrypt.", "libgcc_s.", "libstdc++.", "libGL", "libEGL", "libgbm", "libdrm", "libX11.",
     "libX11-xcb", "libxcb.so", "libXau", "libXdmcp", "libXext", "libXrender", "libXi.", "libwayland",
     "libfontconfig", "libfreetype", "libexpat", "libasound", "libpulse", "libdbus", "libglib",

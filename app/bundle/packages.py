@@ -8,12 +8,13 @@ import subprocess
 import tarfile
 from pathlib import Path
 
+from app.project.menu_entry import DESKTOP
 from metagraph import __version__
 
 # What a desktop has and the bundle leaves to it; Debian's names.
 DEPENDS = (
     "libc6 (>= {glibc}), libgl1, libegl1, libfontconfig1, libfreetype6, libx11-6, libx11-xcb1, libxcb1, "
-    "libdbus-1-3, libglib2.0-0 | libglib2.0-0t64, libasound2 | libasound2t64"
+    "libdbus-1-3, libgssapi-krb5-2, libglib2.0-0 | libglib2.0-0t64, libasound2 | libasound2t64"
 )
 WHEN = 946684800  # 2000-01-01: a package made again is the same to the byte
 
@@ -49,7 +50,8 @@ def pack_deb(folder: Path, to: Path, glibc: str) -> Path:
         ("metagraph.svg", "usr/share/icons/hicolor/scalable/apps"),
     ):
         (tree / place).mkdir(parents=True)
-        shutil.move(tree / "opt" / "metagraph" / source, tree / place / source)
+        shutil.move(tree / "opt" / "metagraph" / DESKTOP / source, tree / place / source)
+    (tree / "opt" / "metagraph" / "README.txt").unlink()  # how a folder that was unpacked is started
     (tree / "usr" / "bin").mkdir(parents=True)
     (tree / "usr" / "bin" / "metagraph").symlink_to("/opt/metagraph/metagraph")
     size = sum(path.lstat().st_size for path in tree.rglob("*")) // 1024

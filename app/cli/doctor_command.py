@@ -5,6 +5,7 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 
 from app.cli.command_output import say
+from app.cli.system_libraries import find_missing_packages
 from app.shell.system_report import format_report, make_system_report
 
 
@@ -39,5 +40,7 @@ def run(options: Namespace) -> int:
         say(options, "\n".join(f"{name:28} {words}" for name, words in commands.items()), commands)
         return 0
     report = make_system_report()
+    if packages := find_missing_packages():
+        report["Missing"] = f"on Debian or Ubuntu: apt install {' '.join(packages)}"
     say(options, format_report(report), report)
     return 0 if report["OpenGL"].startswith("3.3 or later") else 3

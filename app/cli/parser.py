@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.outputs import claim_outputs, offer_overwrite
+from app.cli.system_libraries import describe_missing_library
 from metagraph import __version__
 from metagraph.common.network_paths import allow
 from metagraph.common.programs import leave_working_folder
@@ -175,6 +176,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # shares its blocks among threads itself.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     given = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        return _run(given)
+    except ImportError as error:
+        if words := describe_missing_library(error):
+            return _fail("--json" in given, words)
+        raise
+
+
+def _run(given: list[str]) -> int:
     allow(NETWORK in given)
     given = [word for word in given if word != NETWORK]
     parser = _parser(given[0] if given else "window")
@@ -196,21 +206,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout = None  # nothing is left to flush
         return 0
     except (FileError, ValueError, RuntimeError) as error:
-        return _fail(options, str(error))
+        return _fail(options.json, str(error))
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
         return _fail(
-            options,
+            options.json,
             f"{place}{error.strerror or error}. Choose another place, or check that you may write there.",
         )
     except MemoryError:
-        return _fail(options, "there is not enough memory for this")
+        return _fail(options.json, "there is not enough memory for this")
     except KeyboardInterrupt:
-        return _fail(options, "stopped")
+        return _fail(options.json, "stopped")
 
 
-def _fail(options: argparse.Namespace, words: str) -> int:
-    if options.json:
+def _fail(as_json: bool, words: str) -> int:
+    if as_json:
         print(json.dumps({"error": words}))
     else:
         print(f"metagraph: {words}", file=sys.stderr)

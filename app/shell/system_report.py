@@ -8,12 +8,10 @@ import sys
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 
-from PySide6.QtCore import QSettings
-
 from metagraph import __version__
+from metagraph.common.disk_cache import cache_folder
 from metagraph.common.extras import EXTRAS, find_extras_folder, is_bundle, is_installed
 from metagraph.common.programs import ROOT
-from metagraph.common.user_folders import find_user_folder
 
 PACKAGES = ("PySide6_Essentials", "numpy", "moderngl", "pyqtgraph", "pyyaml", "av", "msgspec")
 
@@ -28,8 +26,8 @@ def make_system_report() -> dict[str, str]:
         "Screen": os.environ.get("WAYLAND_DISPLAY") or os.environ.get("DISPLAY") or "none",
         "OpenGL": _describe_opengl(),
         "Sound": _describe_sound(),
-        "Caches": str(find_user_folder("caches")),
-        "Settings": QSettings("Metagraph", "Metagraph").fileName(),
+        "Caches": str(cache_folder("")),
+        "Settings": _find_settings(),
         "Extras": ", ".join(name for name in EXTRAS if is_installed(name)) or "none",
         "Extras' folder": str(find_extras_folder()) if is_bundle() else "the environment of this Python",
     }
@@ -45,6 +43,14 @@ def format_report(report: Mapping[str, str]) -> str:
     """Return a report as lines, with its facts below each other."""
     width = max(map(len, report))
     return "\n".join(f"{name:{width}}  {words}" for name, words in report.items())
+
+
+def _find_settings() -> str:
+    try:
+        from PySide6.QtCore import QSettings
+    except ImportError as error:  # a server may lack libraries that Qt needs
+        return f"unknown: {error}"
+    return QSettings("Metagraph", "Metagraph").fileName()
 
 
 def _describe_opengl() -> str:

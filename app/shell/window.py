@@ -42,6 +42,7 @@ from app.translation import tr
 from app.widgets.drop_frame import DropFrame
 from app.widgets.within_screen import FRAME
 from metagraph.common.studio import get_studio
+from metagraph.formats.store import SUFFIX
 
 FIRST_THEME = "dark"
 LATE = 4000  # milliseconds after which the late panels are made in any case
@@ -317,9 +318,11 @@ class Window(QMainWindow):
             self.workspaces.focus_large()
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
-        if self.shell.importing.takes(list_dropped_files(event)):
+        paths = list_dropped_files(event)
+        if self.shell.importing.takes(paths):
             event.acceptProposedAction()
-            self.drop_frame.follow(event)
+            opens = any(path.name.lower().endswith(SUFFIX) for path in paths)
+            self.drop_frame.follow(event, tr("Drop to open") if opens else "")
 
     def dragMoveEvent(self, event: QDragMoveEvent) -> None:
         if self.shell.importing.takes(list_dropped_files(event)):

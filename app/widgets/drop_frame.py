@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QEvent, QObject, QRectF, Qt
-from PySide6.QtGui import QColor, QDropEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import QColor, QDropEvent, QHideEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
 from app.look.theme import get_theme
@@ -21,20 +21,30 @@ class DropFrame(QWidget):
 
     def __init__(self, target: QWidget, look: ThemeChoice, words: str) -> None:
         super().__init__(target)
-        self.target, self.look, self.words = target, look, words
+        self.target, self.look, self.usual, self.words = target, look, words, words
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self.setAccessibleName(words)
+        self._say(words)
         target.installEventFilter(self)
         self.hide()
 
-    def follow(self, event: QDropEvent) -> None:
-        """Show the frame if the target accepted the event of a drag, else hide it."""
+    def follow(self, event: QDropEvent, words: str = "") -> None:
+        """Show the frame if the target accepted the event of a drag, else hide it. words: for this drag, if
+        not the usual ones.
+        """
         if not event.isAccepted():
             self.hide()
             return
+        self._say(words or self.usual)
         self.setGeometry(self.target.rect())
         self.show()
         self.raise_()
+
+    def _say(self, words: str) -> None:
+        self.words = words
+        self.setAccessibleName(words)
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        self._say(self.usual)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() in (QEvent.Type.DragLeave, QEvent.Type.Drop, QEvent.Type.Hide):

@@ -16,6 +16,13 @@ def read_picture_size(data: bytes) -> tuple[int, int] | None:
     return size if size is not None and min(size) > 0 else None
 
 
+def holds_flat_colors(size: tuple[int, int]) -> bool:
+    """Return whether a texture of a size in pixels is so small or narrow that it is a palette: fields of
+    colours that must not run into each other, as in smaller copies of the whole (mipmaps).
+    """
+    return max(size) <= 128 or min(size) <= 64
+
+
 def _png(data: bytes) -> tuple[int, int] | None:
     if len(data) < 33 or data[12:16] != b"IHDR":
         return None

@@ -1,10 +1,10 @@
 """Generated mutants: one operator, number or word of a runtime changed at a time, and whether the conformance
 vectors notice: `python -m tests.engines.generated_mutants javascript --count 400`.
 
-What a vector cannot see is not changed: texts, messages, files that read files (packed ones have tests of their
-own), an engine's own scenes; and what changes nothing: sizes of buffers, how far they are filled or copied (what
-is behind is overwritten or never read), usual values of parameters that are always given, numbers too small to
-divide by.
+What a vector cannot see is not changed: texts, messages, files that read files (packed ones have tests
+of their own), an engine's own scenes; and what changes nothing: sizes of buffers, how far they are
+filled or copied (what is behind is overwritten or never read), usual values of parameters that are
+always given, numbers too small to divide by.
 """
 
 from __future__ import annotations

@@ -12,6 +12,7 @@ from app.features.files.import_report import show_report
 from app.project.files import PRACTICE, SAMPLE, SEATED, Files
 from app.project.importing import Importing
 from app.project.label_files import LabelFiles
+from app.project.menu_entry import add_to_menu, find_unpacked_bundle, is_in_menu, remove_from_menu
 from app.project.second_start import SecondStarts, is_handed_over
 from app.project.watching import Watcher
 from app.shell.actions import Command, Standard
@@ -31,6 +32,8 @@ class FileFeature(Feature):
         self.files, self.importing = shell.services[Files], shell.services[Importing]
         self.watcher, self.undo_stack = shell.services[Watcher], shell.document.undo_stack
         self.labels = LabelFiles(shell.document, shell.jobs, self.files, self.importing, shell.widget)
+        self.bundle = find_unpacked_bundle()
+        self.in_menu = self.bundle is not None and is_in_menu(self.bundle)
         self.watcher.set_on(str(shell.settings.value("watch", "true")) == "true")
         report = partial(show_report, shell)
         self.files.opened.connect(self.session.open_project)
@@ -161,6 +164,26 @@ class FileFeature(Feature):
     def takes_second_start(self) -> bool:
         return is_handed_over()
 
+    def toggle_menu_entry(self) -> None:
+        if self.bundle is None:
+            return
+        try:
+            if self.in_menu:
+                remove_from_menu()
+            else:
+                add_to_menu(self.bundle)
+                self.files.told.emit(tr("Metagraph is in the desktop's menu and opens projects"))
+        except OSError as error:
+            self.files.show_warning(tr("Desktop's menu"), error)
+        self.in_menu = is_in_menu(self.bundle)
+        self.shell.actions.refresh()
+
+    def has_menu_entry(self) -> bool:
+        return self.in_menu
+
+    def is_unpacked(self) -> bool:
+        return self.bundle is not None
+
     # --- history
 
     def undo(self) -> None:
@@ -195,6 +218,16 @@ COMMANDS = (
         FileFeature.toggle_second_start,
         tip=tr_noop("Files that you open from the desktop open in this window, not in a second one"),
         checked=FileFeature.takes_second_start,
+    ),
+    Command(
+        "menu_entry",
+        "&View",
+        "look",
+        tr_noop("Show in the &desktop's menu"),
+        FileFeature.toggle_menu_entry,
+        tip=tr_noop("Adds Metagraph to your desktop's menu; a double click on a project then opens it"),
+        checked=FileFeature.has_menu_entry,
+        visible=FileFeature.is_unpacked,
     ),
     Command("recent", FILE, "project", tr_noop("Open &recent"), fill=FileFeature.fill_recent),
     Command("sample", FILE, "examples", tr_noop("Open the &sample project"), FileFeature.open_sample),

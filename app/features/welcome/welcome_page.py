@@ -241,6 +241,9 @@ class WelcomePage(QWidget):
             if self.isHidden():
                 self._tell_recent()
             self.raise_()
+        focus = self.focusWidget() if not shown else None
+        if focus is not None and focus.hasFocus():  # Qt would give it to the next field, which takes the keys
+            self.window().setFocus()
         self.setVisible(shown)
 
     def _room(self) -> QWidget | None:

@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 
 from app.bundle import folder, libraries, packages
+from app.cli import system_libraries
+from app.project import menu_entry
 from metagraph import __version__
 
 LAUNCHER = Path(folder.__file__).parent / "launcher"
@@ -26,10 +28,11 @@ def bundle(tmp_path):
     python.parent.mkdir(parents=True)
     python.write_text('#!/bin/sh\nprintf "%s\\n" "$QT_QPA_PLATFORMTHEME" "$@"\n')
     python.chmod(0o755)
-    for name in ("metagraph", "metagraph.desktop", "metagraph.xml"):
-        shutil.copy(LAUNCHER / name, made)
-    shutil.copy(folder.ROOT / "app" / "look" / "metagraph.svg", made)
-    (made / "metagraph").chmod(0o755)
+    folder.add_desktop_files(made / menu_entry.DESKTOP)
+    shutil.copy(LAUNCHER / "README.txt", made)
+    if shutil.which("cc") is None:
+        pytest.skip("needs a C compiler")
+    folder.make_launcher(made / "metagraph")
     return made
 
 
@@ -47,6 +50,23 @@ def test_the_launcher_starts_the_python_beside_it_from_anywhere_also_by_a_link(b
         theme, *words = start(program, "window", "my project.metagraph.yaml")
         assert words == expected and theme == "xdgdesktopportal"
     assert start(link)[1:] == expected[:6]
+
+
+def test_file_managers_take_the_launcher_for_a_program(bundle):
+    header = (bundle / "metagraph").read_bytes()[:18]
+    assert header[:4] == b"\x7fELF" and header[16] == 2, "a program at a fixed address, no library or script"
+
+
+def test_a_launcher_without_its_folder_says_what_to_do(bundle, tmp_path):
+    alone = shutil.copy(bundle / "metagraph", tmp_path / "metagraph alone")
+    said = subprocess.run([alone], capture_output=True, text=True, check=False)
+    assert said.returncode == 1 and "Unpack the whole folder again" in said.stderr
+
+
+def test_without_a_compiler_making_one_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(FileNotFoundError, match="apt install gcc"):
+        folder.make_launcher(tmp_path / "metagraph")
 
 
 def test_the_menu_entry_and_the_type_of_projects_are_well_formed():
@@ -84,7 +104,23 @@ def test_a_debian_package_has_a_command_a_menu_entry_and_what_it_needs(bundle, t
         "./opt/metagraph/python/bin/python3",
     ):
         assert name in listed
+    assert "README.txt" not in listed, "it says how to start the folder"
     assert not (tmp_path / "deb").exists(), "nothing is left beside it"
+
+
+def test_nothing_tells_where_and_by_whom_a_bundle_was_made(tmp_path):
+    place = tmp_path / "metagraph_studio-0.1.0.dist-info"
+    place.mkdir()
+    (place / "direct_url.json").write_text('{"url": "file:///tmp/tmpx8/source"}')
+    (place / "RECORD").write_text(f"app/__init__.py,,\n{place.name}/direct_url.json,sha256=x,9\n")
+    (place / "run").touch(0o700)
+    (place / "RECORD").chmod(0o600)
+    folder.remove_source(tmp_path)
+    folder.set_rights(tmp_path)
+    assert not (place / "direct_url.json").exists()
+    assert (place / "RECORD").read_text() == "app/__init__.py,,\n"
+    rights = {path.name: path.stat().st_mode & 0o777 for path in (place, *place.iterdir())}
+    assert rights == {place.name: 0o755, "run": 0o755, "RECORD": 0o644}
 
 
 def test_a_pattern_of_leftovers_that_matches_nothing_is_reported(tmp_path):
@@ -93,6 +129,20 @@ def test_a_pattern_of_leftovers_that_matches_nothing_is_reported(tmp_path):
     assert not list(tmp_path.iterdir())
     with pytest.raises(ValueError, match="gone"):
         folder.remove_matches(tmp_path, ("gone",))
+
+
+@linux
+def test_a_library_that_is_inside_is_not_copied_again_for_a_folder_given_relatively(tmp_path, monkeypatch):
+    inside, found = tmp_path / "out" / "metagraph" / "python", []
+    monkeypatch.setattr(folder, "copy_python", lambda to: found.append(to) or 1 / 0)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ZeroDivisionError):
+        folder.make_folder(Path("out"), tell=found.append)
+    assert found[-1] == inside, "ldd reports whole paths"
+
+
+def test_the_package_depends_on_each_library_that_the_program_looks_for():
+    assert [p for p in system_libraries.PACKAGES.values() if p not in packages.DEPENDS] == []
 
 
 @linux

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QSettings
@@ -27,6 +28,10 @@ def test_the_settings_are_where_the_window_keeps_them(qapp):
     application = prepare_application()  # gives both names
     names = application.organizationName(), application.applicationName()
     assert system_report.make_system_report()["Settings"] == QSettings(*names).fileName()
+
+
+def test_the_folder_of_caches_is_metagraphs_own_and_not_everybodys():
+    assert Path(system_report.make_system_report()["Caches"]).name == "metagraph"
 
 
 def test_without_opengl_it_says_what_to_install_and_ends_with_3(monkeypatch, capsys):

@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
 
 from app.features.welcome.welcome_page import WelcomePage
+from app.shell.workspace_keeper import FIELDS
 from tests.app.painted_text import faults, painted
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -39,6 +41,13 @@ def test_it_goes_when_there_is_something_and_comes_with_nothing(drive, page, toy
     drive.session.set_mode("manual")
     assert page.isHidden()
     drive.session.set_mode("meta")
+
+
+def test_no_field_takes_the_keys_when_it_goes(drive, page):
+    page.cards[2].setFocus()
+    drive.wait(page.cards[2].hasFocus)
+    QTest.mouseClick(page.skip, Qt.MouseButton.LeftButton)
+    assert page.isHidden() and not isinstance(QApplication.focusWidget(), FIELDS)
 
 
 def test_a_first_edit_is_not_covered(drive, page):
