@@ -28,6 +28,8 @@ from metagraph.engines.export_document import list_used_clips, to_document
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.export_rig import list_export_voices, read_voices
 from metagraph.engines.reading import read_export
+from metagraph.engines.targets import registry
+from metagraph.engines.targets.target import Contents
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips
 from metagraph.formats.imports import gather, import_files
@@ -585,3 +587,13 @@ def test_stresses_of_a_voice_come_back_however_near_each_other() -> None:
     project = Project(lines={"said": Line(text="so")}, voices={"said": spoken})
     (back,) = read_voices(list_export_voices(project)).values()
     assert back.accents.tolist() == [0.5, 1.2, 3.0]
+
+
+def test_the_json_is_on_one_line_unless_people_are_to_read_it(tmp_path: Path) -> None:
+    plain = registry.write_for_target(small(), "metagraph", tmp_path / "plain").files[0]
+    pretty = registry.write_for_target(
+        small(), "metagraph", tmp_path / "pretty", Contents(pretty=True)
+    ).files[0]
+    assert plain.read_text("utf-8").count("\n") == 1
+    assert pretty.read_text("utf-8").count("\n") > 100
+    assert json.loads(plain.read_bytes()) == json.loads(pretty.read_bytes())

@@ -93,7 +93,7 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   const again = new Set(replaced);
   if (chain !== null) {
     let more;
-    [more, cursor] = write(chain, seed, end, kinds, old.cursor);
+    ({ 0: more, 1: cursor } = write(chain, seed, end, kinds, old.cursor));
     for (const meta of [...old.written, ...more]) {
       if (meta.start >= now) {
         written.push(meta);
@@ -149,14 +149,14 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   }
   performer.free = Math.max(now - (performer.ready - performer.free), performer.free);
   let delayed;
-  [asked, delayed] = delay(asked, performer.ready, project.settings);
+  ({ 0: asked, 1: delayed } = delay(asked, performer.ready, project.settings));
   let busy = -Infinity; // what runs keeps the time it was wanted for, from the models
   for (const meta of done) {
     if (!meta.written) {
       busy = Math.max(busy, meta.end);
     }
   }
-  const [placed, moved] = replan([...future, ...written, ...asked], project.settings, busy);
+  const { 0: placed, 1: moved } = replan([...future, ...written, ...asked], project.settings, busy);
   const every = [...reports, ...delayed, ...moved];
   return new LayerDraft(layer, performer, true, done, placed, every, old.past, cursor, written);
 }

@@ -29,6 +29,7 @@ class Room {
     this.turn = new Float64Array(4);
     this.base = { rotations: Float64Array.from(graph.baseRotations), translations: Float64Array.from(graph.baseTranslations) };
     this.life = graph.body ? new Enlivener(graph) : null;
+    this.found = { player: null, plan: null, time: 0 }; // what `life` has found last
   }
 }
 
@@ -74,7 +75,7 @@ export class Player {
     this.compose(time);
     if (alive) this.weigh(time);
     if (alive && this.lives) {
-      life.find(pose.rotations, pose.translations, this.plan, this.gaze, time);
+      this.find(time);
       life.apply(pose.rotations, pose.translations);
     }
     if (this.graph.contactRig) touch(this.graph, this.playing(time), time, pose.rotations, pose.translations);
@@ -113,12 +114,21 @@ export class Player {
     return this.room.life.work(this.plan, time, cues);
   }
 
-  /** Find what the life layers do at a time, on the pose composed for it. */
+  /** Find what the life layers do at a time, on the pose composed for it; again only if a pose of that time has not just done so. */
   enliven(time) {
-    const { pose, life } = this.room;
+    const { found } = this.room;
+    if (found.player === this && found.plan === this.plan && found.time === time) return;
     this.compose(time); // eyes made of morph targets hold while the head moves
     this.weigh(time);
+    this.find(time);
+  }
+
+  find(time) {
+    const { pose, life, found } = this.room;
     life.find(pose.rotations, pose.translations, this.plan, this.gaze, time);
+    found.player = this;
+    found.plan = this.plan;
+    found.time = time;
   }
 
   /** Return what plays at a time: of each layer its name, plan, cue with motion or null, and the place of its rest. */
