@@ -21,7 +21,7 @@ _USUAL = Patterns()
 class RestMoment:
     """A moment of a clip that is still enough to stand in.
 
-    `start` and `end` are seconds of the clip. `reason` is in words.
+    `start` and `end` are seconds of the clip; they are equal if a single frame is held. `reason` is in words.
     """
 
     clip: str

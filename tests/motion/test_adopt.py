@@ -117,6 +117,8 @@ def test_a_joint_between_shared_ones_is_no_other_skeleton_and_all_stand_where_th
     ) == pytest.approx(0)
     before = bent(source)
     adopted = adopt(before, target)
+    told = "handed down" if more else "at rest while it plays"
+    assert any("'chest'" in note and told in note for note in adopted.notes)
     _, places = source.globals(before.poses())
     _, found = target.globals(adopted.poses())
     for name in NAMES:
@@ -141,6 +143,16 @@ def test_many_joints_between_shared_ones_are_another_skeleton() -> None:
         np.array([offsets[o] for o in order]),
     )
     assert "5 joints between" in str(describe_difference(other, ours))
+
+
+def test_limbs_that_lead_another_way_from_their_joints_are_another_skeleton() -> None:
+    hanging, leaning = OFFSETS.copy(), OFFSETS.copy()
+    hanging[4] = [0, -0.3, 0]  # the same joints, whose arm hangs where the other is stretched out
+    leaning[4] = [0.29, 0.08, 0]
+    assert "'arm' point another way" in str(describe_difference(skeleton(offsets=hanging), skeleton()))
+    assert describe_difference(skeleton(offsets=leaning), skeleton()) is None
+    with pytest.raises(SkeletonMismatchError, match="point another way"):
+        adopt(clip(skeleton(offsets=hanging)), skeleton())
 
 
 def test_other_names_are_said_to_be_other_names() -> None:
@@ -185,6 +197,7 @@ def test_names_that_differ_by_what_all_joints_bear_are_the_same_skeleton(ours: s
     assert describe_difference(own.skeleton, project) is None
     adopted = adopt(own, project)
     assert adopted.skeleton is project
+    assert any(f"'{theirs.format('hips')}' for '{ours.format('hips')}'" in note for note in adopted.notes)
     np.testing.assert_array_equal(adopted.rotations, own.rotations)
 
 
