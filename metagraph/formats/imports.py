@@ -20,7 +20,7 @@ from metagraph.graph.model import Project
 from metagraph.motion.adopt import SkeletonMismatchError, adopt, describe_difference, measure_bone_difference
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import JointMap, RetargetError, make_fingerprint
-from metagraph.motion.roles import find_roles, is_humanoid
+from metagraph.motion.roles import find_roles, is_humanoid, is_mirrored
 from metagraph.motion.skeleton import Skeleton
 
 if TYPE_CHECKING:
@@ -31,6 +31,10 @@ Maps = Callable[
     [str, str], JointMap | None
 ]  # fingerprints of a source and a target skeleton -> the map kept for them
 _ALONE = phrase("Import it into a separate project.")
+_MIRRORED = phrase(
+    "the figure's left joints are on its right side, so that its feet point backwards. Export it again "
+    "without mirroring it, or swap left and right in the names of its joints."
+)
 _A_POSE = 0.1  # seconds up to which a clip is a pose, not a movement
 _LONGER = 0.025  # share by which bones may differ from the project's without a word
 PERSON = (
@@ -197,6 +201,8 @@ def import_files(
         if character is not None and character.path in still:  # it is useful without a motion
             failures.remove(still[character.path].words)
     notes = (*_together(report.clips), *_together(lost), *_other_bones(list(apart.values())))
+    if skeleton is not None and skeleton is not project.skeleton and is_mirrored(skeleton):
+        notes = (*notes, _MIRRORED)
     if character is not None:
         notes = (*notes, *character.notes)
     result = Imported(tuple(loaded), tuple(failures), notes, report.cancelled, character, stand_ins)
