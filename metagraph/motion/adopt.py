@@ -27,6 +27,8 @@ _NOTABLE = 0.03  # of the figure's size: shorter bones are fingers and faces
 _APART = 0.05  # of the figure's size that joints of one role may be apart at rest in the same character
 _LONG_BONE = 0.1  # of the figure's size: limbs and their parts
 _ELSEWHERE = np.radians(35)  # by which such a bone may point another way, seen from its joint
+_SLIGHTLY = np.radians(15)  # that bones and joints may differ by when their axes are turned alike
+_FEW = 6  # bones, below which nobody can say how axes are turned
 _TURNED = np.radians(5)  # that such joints may be turned against each other at rest
 
 
@@ -69,6 +71,9 @@ class _Match:
     def __init__(self, clip: Skeleton, project: Skeleton) -> None:
         self.clip, self.project = _called_alike(clip, project), project
         self.called = clip.names
+        self.axes = _find_axes(self.clip, project)
+        if self.axes is not None:
+            self.clip = _with_axes(self.clip, self.axes)
         self.own, self.ours = _chains(self.clip, project), _chains(project, self.clip)
 
     def difference(self) -> str | None:
@@ -168,6 +173,8 @@ class _Match:
                     other=renamed[1],
                 )
             )
+        if self.axes is not None:
+            out.append(phrase("the axes of its joints were turned to those of the project's skeleton"))
         for chains, skeleton, words in (
             (self.ours, self.project, _STAYS),
             (self.own, self.clip, _HANDED_DOWN),
@@ -201,6 +208,8 @@ def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
         raise SkeletonMismatchError(why)
     own, chains, alike = match.own, match.ours, match.clip
     source = clip.poses()
+    if match.axes is not None:
+        source = _turn_axes(source, clip.skeleton.parents, match.axes)
     rotations = np.broadcast_to(skeleton.rest_rotations, (clip.frames, len(skeleton), 4)).astype(np.float32)
     translations = np.broadcast_to(skeleton.rest_translations, (clip.frames, len(skeleton), 3)).astype(
         np.float32
@@ -226,6 +235,61 @@ def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
         translated=translated,
         notes=(*clip.notes, *match.note_adopted(), *match.note_lost()),
     )
+
+
+def _find_axes(clip: Skeleton, project: Skeleton) -> Array | None:
+    """Return the turn `[4]` that leads a clip's bones, seen from their joints, to those of the project, where
+    one turn does it for all: one file was written with Z up, another with Y up. None where there is none, or
+    hardly any.
+    """
+    shared = [
+        (j, project.index(name))
+        for j, name in enumerate(clip.names)
+        if name in project
+        and clip.parents[j] >= 0
+        and project.parents[project.index(name)] >= 0
+        and clip.names[clip.parents[j]] == project.names[project.parents[project.index(name)]]
+    ]
+    one, other = [j for j, _ in shared], [j for _, j in shared]
+    theirs, mine = clip.rest_translations[one], project.rest_translations[other]
+    sizes = np.minimum(np.linalg.norm(theirs, axis=-1), np.linalg.norm(mine, axis=-1))
+    long = sizes > _NOTABLE * project.height
+    if long.sum() < _FEW:
+        return None
+    theirs, mine = theirs[long], mine[long]
+    u, _, vt = np.linalg.svd(theirs.T @ mine)
+    flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(vt.T @ u.T))])
+    axes = rotation.from_matrix(vt.T @ flip @ u.T)
+    if 2 * np.arccos(min(1.0, abs(float(axes[3])))) < _ELSEWHERE:
+        return None
+    led = rotation.rotate_vectors(np.tile(axes, (len(theirs), 1)), theirs)
+    alike = (led * mine).sum(-1) / np.linalg.norm(led, axis=-1) / np.linalg.norm(mine, axis=-1)
+    turned = rotation.measure_angle_between(
+        _with_axes(clip, axes).rest_rotations[one], project.rest_rotations[other]
+    )
+    return axes if alike.min() > np.cos(_SLIGHTLY) and turned.max() < _SLIGHTLY else None
+
+
+def _with_axes(skeleton: Skeleton, axes: Array) -> Skeleton:
+    rest = _turn_axes(
+        Pose(skeleton.rest_rotations[None], skeleton.rest_translations[None]), skeleton.parents, axes
+    )
+    return Skeleton(skeleton.names, skeleton.parents, rest.rotations[0], rest.translations[0])
+
+
+def _turn_axes(pose: Pose, parents: Array, axes: Array) -> Pose:
+    """Return poses `[F, J]` with the axes of all joints turned; each joint stays in its place."""
+    below = np.flatnonzero(parents >= 0)
+    rotations = rotation.multiply(pose.rotations.astype(float), rotation.conjugate(axes))
+    rotations[:, below] = rotation.multiply(
+        np.broadcast_to(axes, rotations[:, below].shape), rotations[:, below]
+    )
+    translations = pose.translations.astype(float)
+    shape = translations[:, below].shape
+    translations[:, below] = rotation.rotate_vectors(
+        np.broadcast_to(axes, (*shape[:-1], 4)), translations[:, below]
+    )
+    return Pose(rotations, translations)
 
 
 def _chains(skeleton: Skeleton, other: Skeleton) -> dict[str, list[int]]:

@@ -155,6 +155,33 @@ def test_limbs_that_lead_another_way_from_their_joints_are_another_skeleton() ->
         adopt(clip(skeleton(offsets=hanging)), skeleton())
 
 
+def test_axes_that_one_turn_leads_to_the_project_s_are_turned_and_all_stand_where_they_stood(
+    toy: Any,
+) -> None:
+    s, wave = toy.skeleton, toy.clip("wave")
+    turn = rotation.from_axis_angle(np.array([1.0, 0, 0]), np.radians(-90))  # Z up, in the file's own axes
+    count = len(s)
+    below = np.arange(1, count)
+
+    def turned(rotations: np.ndarray, translations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        around = rotation.multiply(rotations.astype(float), rotation.conjugate(turn))
+        around[..., below, :] = rotation.multiply(turn, around[..., below, :])
+        moved = translations.astype(float).copy()
+        moved[..., below, :] = rotation.rotate_vectors(turn, moved[..., below, :])
+        return around, moved
+
+    file = Skeleton(s.names, s.parents, *turned(s.rest_rotations, s.rest_translations))
+    poses = wave.poses()
+    rotations, _ = turned(poses.rotations, poses.translations)
+    other = Clip("wave", file, wave.fps, rotations, poses.translations[:, :1])
+    _, before = file.globals(other.poses())
+    adopted = adopt(other, s)
+    _, after = s.globals(adopted.poses())
+    assert np.allclose(after, before, atol=1e-5)
+    assert np.allclose(adopted.rotations, wave.rotations, atol=1e-5)
+    assert any("axes of its joints were turned" in note for note in adopted.notes)
+
+
 def test_other_names_are_said_to_be_other_names() -> None:
     strange = skeleton(tuple(f"bone{i}" for i in range(6)))
     assert re.search("'bone0'.*'hips'", describe_difference(strange, skeleton()))
