@@ -1,5 +1,5 @@
-"""Define verbs that depend on the context: remove, rename, copy, paste, select all. Features offer what they
-do.
+"""Define verbs that depend on the context: remove, rename, copy, paste, select all, find. Features offer
+what they do.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-Verb = Literal["remove", "rename", "copy", "paste", "select_all"]
+Verb = Literal["remove", "rename", "copy", "paste", "select_all", "find"]
 
 
 @dataclass(frozen=True)

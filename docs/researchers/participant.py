@@ -31,15 +31,18 @@ from app.main import prepare_application  # noqa: E402
 from metagraph.research.study.machines.klm import predict_seconds  # noqa: E402
 
 SIZES = (10, 20, 50, 100, 152)
-PROPOSED, BY_KEYS, ONE_BY_ONE = (
+PROPOSED, FROM_NAMES, BY_FIELDS, ONE_BY_ONE = (
     "meta-graph, proposals",
     "meta-graph, no proposals",
+    "meta-graph, no patterns either",
     "meta-graph, clip by clip",
 )
 BEST, FROM_ANY = "state machine, best way found", "state machine, from any state"
 EVERY = "state machine, link by link"
-SHOWN = (PROPOSED, BY_KEYS, ONE_BY_ONE, BEST, FROM_ANY, EVERY)
-COLORS = dict(zip(SHOWN, ("#2a9d8f", "#7fb8a4", "#b5cfc2", "#c1554b", "#e09f3e", "#d9b98a"), strict=True))
+SHOWN = (PROPOSED, FROM_NAMES, BY_FIELDS, ONE_BY_ONE, BEST, FROM_ANY, EVERY)
+COLORS = dict(
+    zip(SHOWN, ("#2a9d8f", "#55a99b", "#7fb8a4", "#b5cfc2", "#c1554b", "#e09f3e", "#d9b98a"), strict=True)
+)
 OPERATORS = "KPBHMS"
 TICKS = {
     0.1: "6 s",
@@ -109,11 +112,11 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
     from app.project.files import SAMPLE
     from metagraph.formats.store import open_project
     from metagraph.research.study.machines.by_hand import Way
-    from metagraph.research.study.machines.counted_drops import label_by_drops
+    from metagraph.research.study.machines.counted_fields import label_by_fields
     from metagraph.research.study.machines.counted_hand import search_ways, try_way
     from metagraph.research.study.machines.normal_machine import normalize_machines
     from metagraph.research.study.scores.machines import score
-    from tests.app.expert import Expert, Reviewer, hidden, without_times
+    from tests.app.expert import Expert, Reviewer, TableExpert, hidden, without_times
     from tests.app.participant import Participant, bare, task
 
     given = task(open_project(SAMPLE).project, clips)
@@ -124,8 +127,6 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
     if condition == BEST and not named and clips > IN_WINDOW:
         counted = search_ways(given.reference, named, look)[0]
         row["counted"] = True
-    elif condition == BY_KEYS:
-        counted = label_by_drops(given.reference)
     elif condition in (FROM_ANY, EVERY):
         links: Any = "from any state" if condition == FROM_ANY else "one by one"
         counted = try_way(Way("one by one", links, "clicks", "each", named), given.reference)
@@ -154,6 +155,12 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
         reviewer.act = lambda _: reviewer.review(look)  # type: ignore[method-assign]
         result = reviewer.do("meta")
         row["corrected"] = reviewer.corrected
+    elif condition in (FROM_NAMES, BY_FIELDS):
+        filled = label_by_fields(given.reference, condition == FROM_NAMES)
+        row["predicted without the window"] = filled.seconds
+        typist = TableExpert(drive, given)
+        typist.act = lambda _: typist.fill(filled.steps)  # type: ignore[method-assign]
+        result = typist.do("meta")
     else:
         result = Participant(drive, given).do("meta")
     project = drive.document.project
@@ -191,7 +198,8 @@ def tasks(sizes: Sequence[int]) -> list[tuple[str, int, bool, bool]]:
     for size in sizes:
         for named, look in ((True, False), (True, True), (False, True)):
             some = SHOWN if named else (PROPOSED, BEST, FROM_ANY)
-            out += [(c, size, named, look) for c in some]
+            fields = () if look else (FROM_NAMES, BY_FIELDS)  # nobody watches who goes by names
+            out += [(c, size, named, look) for c in some if c not in (FROM_NAMES, BY_FIELDS) or c in fields]
     return out
 
 
@@ -217,14 +225,17 @@ def fair(rows: Sequence[Mapping[str, Any]]) -> str:
     sizes = sorted({r["clips"] for r in rows})
     by = {key(r): r for r in rows}
     out = [
-        "| clips | " + " | ".join(title.lower() for *_, title in KINDS) + " | names only, without proposals |"
+        "| clips | "
+        + " | ".join(title.lower() for *_, title in KINDS)
+        + " | no proposals | no proposals, no patterns of names |"
     ]
-    out.append("|---|" + "---|" * (len(KINDS) + 1))
+    out.append("|---|" + "---|" * (len(KINDS) + 2))
     for size in sizes:
         cells = []
         for ours, theirs, named, look in (
             *((PROPOSED, BEST, named, look) for named, look, _ in KINDS),
-            (BY_KEYS, BEST, True, False),
+            (FROM_NAMES, BEST, True, False),
+            (BY_FIELDS, BEST, True, False),
         ):
             a, b = by.get((ours, size, named, look)), by.get((theirs, size, named, look))
             cells.append(
@@ -254,7 +265,7 @@ def table(rows: Sequence[Mapping[str, Any]]) -> str:
                 time_words(row["hands"]),
                 time_words(row["seconds"]),
             ]
-            ratio = times(rows, row) if row["condition"] in (PROPOSED, BY_KEYS, BEST) else ""
+            ratio = times(rows, row) if row["condition"] in (PROPOSED, FROM_NAMES, BY_FIELDS, BEST) else ""
             cells += [ratio, f"{row['connections']:,}", row["mistakes"]]
             out.append(f"| {' | '.join(map(str, cells))} |")
         out.append("")
@@ -340,7 +351,7 @@ def plot(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def main(arguments: Sequence[str]) -> None:
     sizes = [int(a) for a in arguments if a.isdigit()] or SIZES
-    kept = Path(tempfile.gettempdir()) / "metagraph-participant-2.jsonl"
+    kept = Path(tempfile.gettempdir()) / "metagraph-participant-3.jsonl"
     if "--again" in arguments:
         kept.unlink(missing_ok=True)
     rows = [json.loads(line) for line in kept.read_text().splitlines()] if kept.is_file() else []

@@ -108,11 +108,8 @@ class ContactPose:
 
 def spread(rig: ContactRig, pose: ContactPose) -> None:
     """Compute where all joints are."""
-    pose.turned = []
-    pose.at = []
-    for place, turn in enumerate(pose.local):
-        pose.turned.append(turn)
-        pose.at.append(pose.moved[place])
+    pose.turned = list(pose.local)
+    pose.at = list(pose.moved)
     for place in range(len(rig.parents)):
         _join(rig, pose, place)
 
@@ -123,8 +120,11 @@ def _join(rig: ContactRig, pose: ContactPose, place: int) -> None:
         pose.turned[place] = pose.local[place]
         pose.at[place] = pose.moved[place]
     else:
-        pose.turned[place] = times(pose.turned[above], pose.local[place])
-        pose.at[place] = plus(pose.at[above], rotated(pose.turned[above], pose.moved[place]))
+        turn = pose.turned[above]
+        x, y, z = rotated(turn, pose.moved[place])
+        ax, ay, az = pose.at[above]
+        pose.turned[place] = times(turn, pose.local[place])
+        pose.at[place] = (ax + x, ay + y, az + z)
 
 
 def solve_contacts(rig: ContactRig, pose: ContactPose, goals: Sequence[HandGoal]) -> bool:
@@ -326,14 +326,14 @@ def _shift(
         if mine.arm != side or mine.kind == OBSTACLE:
             continue
         mx, my, mz, size = balls[i]
-        for k in range(len(rig.capsules)):
+        for k in range(len(balls)):
+            ox, oy, oz, most = balls[k]
+            dx, dy, dz, reach = ox - mx, oy - my, oz - mz, most + size
+            if dx * dx + dy * dy + dz * dz >= reach * reach:
+                continue  # most are nowhere near
             other = rig.capsules[k]
             if other.arm == side:
                 continue
-            ox, oy, oz, most = balls[k]
-            reach = most + size
-            if (ox - mx) * (ox - mx) + (oy - my) * (oy - my) + (oz - mz) * (oz - mz) >= reach * reach:
-                continue  # most are nowhere near
             share = own
             if other.arm >= 0:
                 share = min(own, 1.0 - across)
@@ -382,11 +382,16 @@ def _along(ends: Sequence[Vector], i: int, k: int) -> float:
 
 def apart(ends: Sequence[Vector], i: int, k: int) -> Quaternion:
     """Return the shortest way from the line that begins at `ends[k]` to the one at `ends[i]`, and
-    its length.
+    its length. Its vectors are written out, since a guarded pose asks some thirty times.
     """
-    a, c = ends[i], ends[k]
-    u, v, w = minus(ends[i + 1], a), minus(ends[k + 1], c), minus(a, c)
-    uu, uv, vv, uw, vw = dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w)
+    ax, ay, az = ends[i]
+    bx, by, bz = ends[i + 1]
+    cx, cy, cz = ends[k]
+    dx, dy, dz = ends[k + 1]
+    ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, dx - cx, dy - cy, dz - cz
+    wx, wy, wz = ax - cx, ay - cy, az - cz
+    uu, uv, vv = ux * ux + uy * uy + uz * uz, ux * vx + uy * vy + uz * vz, vx * vx + vy * vy + vz * vz
+    uw, vw = ux * wx + uy * wy + uz * wz, vx * wx + vy * wy + vz * wz
     s, t = 0.0, 0.0
     if uu > 1e-12:
         below = uu * vv - uv * uv
@@ -401,5 +406,5 @@ def apart(ends: Sequence[Vector], i: int, k: int) -> Quaternion:
             s = min(max(-uw / uu, 0.0), 1.0)
     elif vv > 1e-12:
         t = min(max(vw / vv, 0.0), 1.0)
-    x, y, z = minus(plus(w, scaled(u, s)), scaled(v, t))
+    x, y, z = wx + ux * s - vx * t, wy + uy * s - vy * t, wz + uz * s - vz * t
     return x, y, z, sqrt(x * x + y * y + z * z)

@@ -19,7 +19,9 @@ from metagraph.graph import edits
 from metagraph.graph.edits import guess_limb
 from metagraph.graph.manual.machine import ANY
 from metagraph.graph.model import LIMBS, Project
+from metagraph.playback.action_table import COLUMNS
 from metagraph.research.study.machines.by_hand import MachineDrawing, Way, Work, list_works
+from metagraph.research.study.machines.counted_fields import FromNames, SetFound, Step
 from metagraph.research.study.machines.finding import Words
 from metagraph.suggest.review import DECIDING
 from tests.app.participant import LEFT, Participant, Task
@@ -254,6 +256,58 @@ class Expert(Participant):
 
     def table(self, text: str) -> None:
         raise NotImplementedError("a table is written in another program")
+
+
+class TableExpert(Participant):
+    """Labels clips field by field in the table, without proposals, by the window's own events."""
+
+    def fill(self, steps: Sequence[Step]) -> None:
+        d = self.drive
+        self.think()
+        QTest.keyClick(d.window, Qt.Key.Key_T, CONTROL)
+        d.wait(lambda: d.shell.panel("table").view.hasFocus())
+        self.panel = d.shell.panel("table")
+        self.naming = False
+        for step in steps:
+            self.think()
+            steps_before = d.document.undo_stack.index()
+            if isinstance(step, FromNames):
+                self._fill_from_names(step.pattern)
+            else:
+                self._set_found(step)
+            self.wait(lambda before=steps_before: d.document.undo_stack.index() > before)  # type: ignore[misc]
+            self.wait(lambda: self.panel.rows.project is d.document.project)
+            assert not self.panel.rows.refused, self.panel.message.text()
+
+    def _fill_from_names(self, pattern: str) -> None:
+        row = self.panel.naming
+        if self.naming:
+            QTest.keyClick(row.pattern, Qt.Key.Key_A, CONTROL)
+        else:
+            self.click(self.panel.names_button, self.panel.names_button.rect().center())
+            self.drive.wait(row.pattern.hasFocus)
+        self.naming = True
+        self.thoughts += pattern.count("{")
+        QTest.keyClicks(row.pattern, pattern)
+        QTest.keyClick(row.pattern, Qt.Key.Key_Return)
+
+    def _set_found(self, step: SetFound) -> None:
+        panel, view = self.panel, self.panel.view
+        self.thoughts += 1 + step.words.count(" ") + step.words.count("|")
+        QTest.keyClick(QApplication.focusWidget(), Qt.Key.Key_F, CONTROL)
+        self.drive.wait(panel.search.hasFocus)
+        if step.words:
+            QTest.keyClicks(panel.search, step.words)
+        else:
+            QTest.keyClick(panel.search, Qt.Key.Key_Delete)
+        QTest.keyClick(panel.search, Qt.Key.Key_Return)
+        self.drive.wait(view.hasFocus)
+        wanted = COLUMNS.index(step.column)
+        while (now := view.currentIndex().column()) != wanted:
+            QTest.keyClick(view, Qt.Key.Key_Right if now < wanted else Qt.Key.Key_Left)
+        for letter in step.typed:
+            QTest.keyClicks(QApplication.focusWidget(), letter)
+        QTest.keyClick(QApplication.focusWidget(), Qt.Key.Key_Return)
 
 
 class Reviewer(Participant):

@@ -6,10 +6,11 @@ import pytest
 
 from metagraph.formats.store import open_project
 from metagraph.research.study.machines.by_hand import Way
+from metagraph.research.study.machines.counted_fields import label_by_fields
 from metagraph.research.study.machines.counted_hand import try_way
 from metagraph.research.study.machines.normal_machine import normalize_machines
 from metagraph.research.study.scores.machines import score
-from tests.app.expert import Expert, Reviewer, hidden, without_times
+from tests.app.expert import Expert, Reviewer, TableExpert, hidden, without_times
 from tests.app.participant import CONDITIONS, Participant, bare, task
 from tests.thorough import THOROUGH, many, some
 
@@ -102,3 +103,15 @@ def test_an_expert_goes_through_proposals_without_a_mistake(drive, sample, look,
     assert not wrong or (not look and not named)  # unseen and unnamed, what is sure may be wrong
     assert result.operators["P"] == result.operators["B"] == 0
     assert (reviewer.looked == 12) == look and (reviewer.watched > 0) == look
+
+
+@pytest.mark.parametrize("from_names", [True, False])
+def test_clips_are_labelled_field_by_field_in_the_table_as_was_counted(drive, sample, from_names):
+    given = task(sample, 24)
+    filled = label_by_fields(given.reference, from_names)
+    bare(drive, given, "meta")
+    expert = TableExpert(drive, given)
+    expert.act = lambda _: expert.fill(filled.steps)
+    result = expert.do("meta")
+    assert not result.score.mistakes and result.score.f1 == 1.0
+    assert {k: result.operators[k] for k in "KM"} == {k: filled.operators[k] for k in "KM"}

@@ -16,6 +16,7 @@ def contribute(shell: Shell) -> Contribution:
     verbs.offer("remove", partial(has_clips_selected, library), library.remove, rank=6)
     verbs.offer("rename", lambda: len(library.clips) == 1, library.rename, rank=0)
     verbs.offer("select_all", library.has_focus, library.select_all, rank=0)
+    verbs.offer("find", lambda: True, library.search, rank=9)
     return Contribution(
         panels=(
             Panel(

@@ -15,6 +15,7 @@ from app.look.domain_words import COLOR_LABELS
 from app.project.importing import Importing
 from app.shell.actions import Command, Standard
 from app.shell.command_table import Feature, bind_commands, has_clips_selected
+from app.shell.verbs import Verbs
 from app.stage.problem_watch import ProblemWatch
 from app.translation import tr, tr_noop, tr_plural
 from metagraph.graph.clip_mark import COLORS, STARS
@@ -61,6 +62,9 @@ class LibraryFeature(Feature):
         return self.panel.isAncestorOf(QApplication.focusWidget() or self.shell.widget)
 
     def find(self) -> None:
+        self.shell.services[Verbs].do("find")
+
+    def search(self) -> None:
         self.panel.search.setFocus()
 
     def select_all(self) -> None:

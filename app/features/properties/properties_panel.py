@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QObject, Qt
+from PySide6.QtCore import QEvent, QObject, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QScrollArea, QSizePolicy, QStackedWidget, QWidget
 
@@ -26,6 +26,7 @@ LOW = 240  # pixels of height below which the curves of a timing leave no room f
 
 
 PLOTS = "app.features.properties.action_page"  # takes long to import
+SOON = 1500  # milliseconds after which the page of actions is made, before anybody selects one
 
 
 class PropertiesPanel(QScrollArea):
@@ -60,29 +61,43 @@ class PropertiesPanel(QScrollArea):
             signal.connect(self.show_selection)
         for signal in (session.place.layer_changed, session.place.stance_changed):
             signal.connect(self._moved_on)
+        self._early = QTimer(self, singleShot=True, interval=SOON)
+        self._early.timeout.connect(self._make_early)
+        self._early.start()
         self.show_selection()
 
-    # --- the page of actions, which is made when there are any to show
+    # --- the page of actions, which is made when there are any to show, or when nothing else is to be done
 
     @property
     def action(self) -> ActionPage:
         """The page of actions; it is made now where it was not yet."""
-        if self._action is None:
-            from app.features.properties.action_page import ActionPage
+        return self._action or self._make_page()
 
-            self._action = page = ActionPage(self.document, self.session, self._try, self)
-            self.pages.insertWidget(1, page)
-            self.pages.removeWidget(self._none)
-            self._none.deleteLater()
-            self._furnish(page)
-            page.fit(self.size())
-            self._set_low(page, self.height())
-            self.show_selection()
-        return self._action
+    def _make_page(self) -> ActionPage:
+        from app.features.properties.action_page import ActionPage
+
+        self._action = page = ActionPage(self.document, self.session, self._try, self)
+        self.pages.insertWidget(1, page)
+        self.pages.removeWidget(self._none)
+        self._none.deleteLater()
+        self._furnish(page)
+        page.fit(self.size())
+        self._set_low(page, self.height())
+        self.show_selection()
+        return page
+
+    def _make_early(self) -> None:
+        """Make the page before it is needed: the first click would wait a tenth of a second for it."""
+        if self._action is None and not self._fetching:
+            self._fetching = True
+            self._fetch((PLOTS,), self._fetched)
 
     def _fetched(self) -> None:
         self._fetching = False
-        self.show_selection()
+        if self._action is None and PLOTS in sys.modules:
+            self._make_page()
+        else:
+            self.show_selection()
 
     # --- its size
 

@@ -9,6 +9,7 @@ from functools import partial
 from PySide6.QtCore import QPoint, QSettings, Qt
 from PySide6.QtGui import QGuiApplication, QResizeEvent
 from PySide6.QtWidgets import (
+    QApplication,
     QBoxLayout,
     QHBoxLayout,
     QInputDialog,
@@ -22,6 +23,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.table.cell_words import TITLES
+from app.features.table.from_names_row import FromNamesRow
 from app.features.table.replace_row import ReplaceRow
 from app.features.table.table_filter import WHICH, TableFilter, Which, keep_filters, read_filters
 from app.features.table.table_model import TableModel
@@ -36,6 +38,7 @@ from app.widgets.quiet_fields import ComboBox
 from app.widgets.soon import Soon
 from metagraph.graph.model import Project
 from metagraph.playback.action_table import COLUMNS, Cell, write_cells
+from metagraph.playback.name_fields import NamePattern, fill_from_names
 
 TITLES_OF: Mapping[Which, str] = make_lazy_texts(
     lambda: {
@@ -61,6 +64,7 @@ class TablePanel(QWidget):
         super().__init__(parent)
         self.document, self.session = document, session
         self._selecting = self._behind = self._writing = False
+        self._column = COLUMNS.index("kind")  # in which what was found is edited
         self.rows = TableModel(get_theme(session.look.name))
         self.view = TableView(self.rows, self)
         self.view.written.connect(self.write)
@@ -71,19 +75,24 @@ class TablePanel(QWidget):
         self.replacing.hide()
         self.replacing.wanted.connect(self.replace)
         self.replacing.sought_changed.connect(self._count)
+        self.naming = FromNamesRow(self)
+        self.naming.hide()
+        self.naming.wanted.connect(self.fill_from_names)
+        self.naming.pattern_changed.connect(self._count)
         self.message = QLabel(self, wordWrap=True)
         self.message.hide()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(12, 8, 12, 8)
         layout.addLayout(self._make_bar())
         layout.addWidget(self.replacing)
+        layout.addWidget(self.naming)
         layout.addWidget(self.view, 1)
         layout.addWidget(self.message)
         self._show_columns()
         self._fresh = Soon(self.refresh, self)
         self.view.itemDelegate().closeEditor.connect(self._catch_up)
         document.changed.connect(self._edited)
-        document.loaded.connect(self._forget_refused)
+        document.loaded.connect(self._forget_edits)
         session.selection.changed.connect(self._follow)
         session.look.changed.connect(self._restyle)
         self._offer(verbs)
@@ -93,7 +102,7 @@ class TablePanel(QWidget):
         self._follow()
 
     def _changing(self) -> tuple[QWidget, ...]:
-        return self.fill, self.replace_button, self.count
+        return self.fill, self.names_button, self.replace_button, self.count
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Put what changes cells under what finds them, where a line has no room for both."""
@@ -110,6 +119,7 @@ class TablePanel(QWidget):
         self.search.setToolTip(tr("Words of any cell: sit gesture, sit -loop, sit | bow"))
         self.search.setAccessibleName(tr("Search the table"))
         self.search.textChanged.connect(self._filter)
+        self.search.returnPressed.connect(self.select_found)
         self.which = ComboBox(self)
         for which in WHICH:
             self.which.addItem(TITLES_OF[which], which)
@@ -126,6 +136,9 @@ class TablePanel(QWidget):
         self.fill = QPushButton(tr("Fill down"), self)
         self.fill.setToolTip(tr("Write what the first selected cell says into those below it (Ctrl+D)"))
         self.fill.clicked.connect(self.view.fill_down)
+        self.names_button = make_widget(QToolButton, self, text=tr("From names…"), checkable=True)
+        self.names_button.setToolTip(tr("Fill stances and other fields from parts of the clips' names"))
+        self.names_button.toggled.connect(self._show_naming)
         self.replace_button = make_widget(QToolButton, self, text=tr("Replace…"), checkable=True)
         self.replace_button.toggled.connect(self._show_replacing)
         self.count = QLabel(self)
@@ -139,18 +152,33 @@ class TablePanel(QWidget):
             for widget in widgets:
                 row.addWidget(widget, 1 if widget is self.search else 0)
             bar.addLayout(row, 1 if row is finding else 0)
-        for button in (self.kept, self.fill, self.replace_button):
+        for button in (self.kept, self.fill, self.names_button, self.replace_button):
             button.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the cells keep the keyboard
         return bar
 
     def _offer(self, verbs: Verbs) -> None:
-        """Copy, paste, empty, select and edit (F2) cells while the table has the keyboard."""
+        """Copy, paste, empty, select and edit (F2) cells while they have the keyboard, and find rows."""
         has_keys = self.view.hasFocus
+        verbs.offer("find", self._has_focus, self.start_search, rank=0)
         verbs.offer("copy", has_keys, self.copy, rank=0)
         verbs.offer("paste", has_keys, self.paste, rank=0)
         verbs.offer("remove", has_keys, self.view.clear_cells, rank=0)
         verbs.offer("select_all", has_keys, self.view.selectAll, rank=0)
         verbs.offer("rename", has_keys, self.view.edit_current, rank=0)
+
+    def _has_focus(self) -> bool:
+        return self.isAncestorOf(QApplication.focusWidget() or self.window())
+
+    def start_search(self) -> None:
+        """Type what rows are searched for."""
+        self.search.setFocus()
+        self.search.selectAll()
+
+    def select_found(self) -> None:
+        """Select all rows shown, in the column that was edited last: what is typed next goes there."""
+        if self.rows.rows:
+            self.view.setFocus()
+            self.view.select_column(self._column)
 
     def take_focus(self) -> None:
         """Give the cells the keyboard."""
@@ -164,6 +192,8 @@ class TablePanel(QWidget):
         """Write texts into cells, as one step; say which could not be written, and mark them."""
         written = write_cells(self.document.project, cells)
         columns = {column for _, column in cells}
+        if len(columns) == 1:
+            self._column = COLUMNS.index(next(iter(columns)))
         what = TITLES[next(iter(columns))] if len(columns) == 1 else tr("cells")
         self._writing = True
         self.document.edit(tr("Edit {what} in the table", what=what), lambda _: written.project)
@@ -197,6 +227,19 @@ class TablePanel(QWidget):
             words = self.rows.text(index)
             if index.flags() & Qt.ItemFlag.ItemIsEditable and pattern.search(words):
                 texts[self.rows.cell(index)] = self.rows.typed(index, pattern.sub(lambda _: put, words))
+        if texts:
+            self.write(texts)
+        self._count()
+
+    def fill_from_names(self, pattern: NamePattern) -> None:
+        """Fill fields from the names of the selected rows, or of all if only one or none is selected."""
+        rows = [self.rows.rows[n] for n in self._replaced_rows()]
+        filled = fill_from_names(self.document.project, rows, pattern)
+        places = {row.ident: n for n, row in enumerate(self.rows.rows)}
+        texts = {
+            (ident, column): self.rows.typed(self.rows.index(places[ident], COLUMNS.index(column)), text)
+            for (ident, column), text in filled.items()
+        }
         if texts:
             self.write(texts)
         self._count()
@@ -295,6 +338,21 @@ class TablePanel(QWidget):
             sought, column = self.replacing.sought.text().casefold(), self.replacing.chosen_column()
             cells = [self.rows.index(row, column) for row in self._replaced_rows()] if sought else []
             self.replacing.show_count(sum(sought in self.rows.text(i).casefold() for i in cells))
+        if self.naming.isVisible():
+            self._show_fitting()
+
+    def _show_fitting(self) -> None:
+        """Say which names fit the pattern that is typed."""
+        pattern = self.naming.read()
+        if pattern is None:
+            self.naming.show_nothing()
+            return
+        rows = [self.rows.rows[n] for n in self._replaced_rows()]
+        filled = fill_from_names(self.document.project, rows, pattern)
+        fitting = [row for row in rows if (row.ident, pattern.columns[0]) in filled]
+        first = {c: filled[fitting[0].ident, c] for c in pattern.columns} if fitting else {}
+        name = self.document.project.clips[fitting[0].clip].name if fitting else ""
+        self.naming.show_fitting(len(fitting), name, first)
 
     def _fill_filters(self, menu: QMenu) -> None:
         menu.clear()
@@ -326,10 +384,18 @@ class TablePanel(QWidget):
     def _forget_filter(self, name: str) -> None:
         keep_filters({n: rule for n, rule in read_filters().items() if n != name})
 
+    def _show_naming(self, on: bool) -> None:
+        self.naming.setVisible(on)
+        self._count()
+        if on:
+            self.replace_button.setChecked(False)
+            self.naming.pattern.setFocus()
+
     def _show_replacing(self, on: bool) -> None:
         self.replacing.setVisible(on)
         self._count()
         if on:
+            self.names_button.setChecked(False)
             self.replacing.sought.setFocus()
 
     def _show_columns(self) -> None:
@@ -363,6 +429,11 @@ class TablePanel(QWidget):
             self._fresh.ask()
         if not self._writing:  # what was refused before is no longer about the present
             self._forget_refused()
+
+    def _forget_edits(self) -> None:
+        """Begin with another project."""
+        self._column = COLUMNS.index("kind")
+        self._forget_refused()
 
     def _forget_refused(self) -> None:
         if self.rows.refused or not self.message.isHidden():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import (
     QEvent,
+    QItemSelection,
     QItemSelectionModel,
     QModelIndex,
     QObject,
@@ -183,8 +184,33 @@ class TableView(QTableView):
             self.edit_current()
         elif event.key() == Qt.Key.Key_Space:
             event.ignore()
+        elif (
+            event.key() in (Qt.Key.Key_Left, Qt.Key.Key_Right) and not event.modifiers() and self._is_column()
+        ):
+            self._move_column(1 if event.key() == Qt.Key.Key_Right else -1)
         else:
             super().keyPressEvent(event)
+
+    def _is_column(self) -> bool:
+        """Return whether several cells are selected, all in one column."""
+        chosen = self.selectedIndexes()
+        return len(chosen) > 1 and len({i.column() for i in chosen}) == 1
+
+    def _move_column(self, step: int) -> None:
+        """Select the same rows in the next column."""
+        head, flags = self.horizontalHeader(), QItemSelectionModel.SelectionFlag
+        place = head.visualIndex(self.currentIndex().column()) + step
+        while 0 <= place < head.count() and head.isSectionHidden(head.logicalIndex(place)):
+            place += step
+        if not 0 <= place < head.count():
+            return
+        column, current, model = head.logicalIndex(place), self.currentIndex(), self.selectionModel()
+        chosen = QItemSelection()
+        for row in self.selected_rows():
+            chosen.select(self.rows.index(row, column), self.rows.index(row, column))
+        model.select(chosen, flags.ClearAndSelect)
+        model.setCurrentIndex(self.rows.index(current.row(), column), flags.NoUpdate)
+        self.scrollTo(self.currentIndex())
 
     def edit_current(self) -> None:
         """Edit the current cell in place."""
@@ -285,6 +311,15 @@ class TableView(QTableView):
         return sorted((c for c in some if not head.isSectionHidden(c)), key=head.visualIndex)
 
     # --- rows
+
+    def select_column(self, column: int) -> None:
+        """Select the cells of a column in all rows, the first to be edited."""
+        flags = QItemSelectionModel.SelectionFlag
+        first, last = self.rows.index(0, column), self.rows.index(len(self.rows.rows) - 1, column)
+        model = self.selectionModel()
+        model.select(QItemSelection(first, last), flags.ClearAndSelect)
+        model.setCurrentIndex(first, flags.NoUpdate)
+        self.scrollTo(first)
 
     def select_rows(self, rows: list[int]) -> None:
         """Select whole rows, and show the first."""

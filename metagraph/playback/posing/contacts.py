@@ -188,8 +188,8 @@ def solve_pose_with_contacts(pose: Pose, rig: ContactRig, goals: Sequence[Sequen
     places = [p for arm in rig.arms for p in (arm.upper, arm.lower, arm.hand)]
     for n in np.flatnonzero(busy).tolist():
         one = ContactPose(
-            [tuple(q) for q in pose.rotations[n, joints].tolist()],
-            [tuple(v) for v in pose.translations[n, joints].tolist()],
+            list(map(tuple, pose.rotations[n, joints].tolist())),
+            list(map(tuple, pose.translations[n, joints].tolist())),
         )
         spread(rig, one)
         if solve_contacts(rig, one, goals[n]):

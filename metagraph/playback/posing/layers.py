@@ -203,7 +203,7 @@ def compute_loop_seconds(project: Project, action: Action, elapsed: Array) -> tu
         zero = np.zeros_like(elapsed)
         return zero + start, zero + start, zero
     phase = np.mod(np.maximum(elapsed, 0.0) if seam > 0 else elapsed, period)
-    if seam <= 0:
+    if seam <= 0 or not (phase < seam).any():
         return start + phase, start + phase, np.zeros_like(phase)
     old = np.where(elapsed >= period, 1 - ease_blend(phase / seam), 0.0)
     return start + phase, start + np.minimum(period + phase, length), old

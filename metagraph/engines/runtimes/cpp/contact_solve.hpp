@@ -194,13 +194,8 @@ namespace contact_solve {
 
 /// Compute where all joints are.
 inline void spread(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose) {
-    pose->turned = List<std::tuple<double, double, double, double>>{};
-    pose->at = List<std::tuple<double, double, double>>{};
-    for (int place = 0; place < lang::len(pose->local); place++) {
-        const auto& turn = lang::at(pose->local, place);
-        pose->turned.push_back(turn);
-        pose->at.push_back(lang::at(pose->moved, place));
-    }
+    pose->turned = pose->local;
+    pose->at = pose->moved;
     for (int place = 0; place < lang::len(rig->parents); place++) {
         contact_solve::_join(rig, pose, place);
     }
@@ -212,14 +207,11 @@ inline void _join(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose, int 
         lang::at(pose->turned, place) = lang::at(pose->local, place);
         lang::at(pose->at, place) = lang::at(pose->moved, place);
     } else {
-        lang::at(pose->turned, place) = plain_vectors::times(
-            lang::at(pose->turned, above),
-            lang::at(pose->local, place)
-        );
-        lang::at(pose->at, place) = plain_vectors::plus(
-            lang::at(pose->at, above),
-            plain_vectors::rotated(lang::at(pose->turned, above), lang::at(pose->moved, place))
-        );
+        std::tuple<double, double, double, double> turn = lang::at(pose->turned, above);
+        auto [x, y, z] = plain_vectors::rotated(turn, lang::at(pose->moved, place));
+        auto [ax, ay, az] = lang::at(pose->at, above);
+        lang::at(pose->turned, place) = plain_vectors::times(turn, lang::at(pose->local, place));
+        lang::at(pose->at, place) = std::tuple<double, double, double>{ax + x, ay + y, az + z};
     }
 }
 
@@ -594,15 +586,18 @@ inline std::tuple<double, double, double> _shift(
             continue;
         }
         auto [mx, my, mz, size] = lang::at(balls, i);
-        for (int k = 0; k < lang::len(rig->capsules); k++) {
+        for (int k = 0; k < lang::len(balls); k++) {
+            auto [ox, oy, oz, most] = lang::at(balls, k);
+            double dx = ox - mx;
+            double dy = oy - my;
+            double dz = oz - mz;
+            double reach = most + size;
+            if (dx * dx + dy * dy + dz * dz >= reach * reach) {
+                continue; // most are nowhere near
+            }
             Ref<BodyCapsule> other = lang::at(rig->capsules, k);
             if (other->arm == side) {
                 continue;
-            }
-            auto [ox, oy, oz, most] = lang::at(balls, k);
-            double reach = most + size;
-            if ((ox - mx) * (ox - mx) + (oy - my) * (oy - my) + (oz - mz) * (oz - mz) >= reach * reach) {
-                continue; // most are nowhere near
             }
             double share = own;
             if (other->arm >= 0) {
@@ -673,22 +668,31 @@ inline double _along(const List<std::tuple<double, double, double>>& ends, int i
     return s;
 }
 
-/// Return the shortest way from the line that begins at `ends[k]` to the one at `ends[i]`, and its length.
+/// Return the shortest way from the line that begins at `ends[k]` to the one at `ends[i]`, and its length. Its vectors
+/// are written out, since a guarded pose asks some thirty times.
 inline std::tuple<double, double, double, double> apart(
     const List<std::tuple<double, double, double>>& ends,
     int i,
     int k
 ) {
-    std::tuple<double, double, double> a = lang::at(ends, i);
-    std::tuple<double, double, double> c = lang::at(ends, k);
-    std::tuple<double, double, double> u = plain_vectors::minus(lang::at(ends, i + 1), a);
-    std::tuple<double, double, double> v = plain_vectors::minus(lang::at(ends, k + 1), c);
-    std::tuple<double, double, double> w = plain_vectors::minus(a, c);
-    double uu = plain_vectors::dot(u, u);
-    double uv = plain_vectors::dot(u, v);
-    double vv = plain_vectors::dot(v, v);
-    double uw = plain_vectors::dot(u, w);
-    double vw = plain_vectors::dot(v, w);
+    auto [ax, ay, az] = lang::at(ends, i);
+    auto [bx, by, bz] = lang::at(ends, i + 1);
+    auto [cx, cy, cz] = lang::at(ends, k);
+    auto [dx, dy, dz] = lang::at(ends, k + 1);
+    double ux = bx - ax;
+    double uy = by - ay;
+    double uz = bz - az;
+    double vx = dx - cx;
+    double vy = dy - cy;
+    double vz = dz - cz;
+    double wx = ax - cx;
+    double wy = ay - cy;
+    double wz = az - cz;
+    double uu = ux * ux + uy * uy + uz * uz;
+    double uv = ux * vx + uy * vy + uz * vz;
+    double vv = vx * vx + vy * vy + vz * vz;
+    double uw = ux * wx + uy * wy + uz * wz;
+    double vw = vx * wx + vy * wy + vz * wz;
     double s = 0.0;
     double t = 0.0;
     if (uu > 1e-12) {
@@ -708,10 +712,9 @@ inline std::tuple<double, double, double, double> apart(
     } else if (vv > 1e-12) {
         t = std::min(std::max(vw / vv, 0.0), 1.0);
     }
-    auto [x, y, z] = plain_vectors::minus(
-        plain_vectors::plus(w, plain_vectors::scaled(u, s)),
-        plain_vectors::scaled(v, t)
-    );
+    double x = wx + ux * s - vx * t;
+    double y = wy + uy * s - vy * t;
+    double z = wz + uz * s - vz * t;
     return std::tuple<double, double, double, double>{x, y, z, std::sqrt(x * x + y * y + z * z)};
 }
 

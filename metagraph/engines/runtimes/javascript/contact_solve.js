@@ -114,12 +114,8 @@ export class ContactPose {
  * @param {ContactPose} pose
  */
 export function spread(rig, pose) {
-  pose.turned = [];
-  pose.at = [];
-  for (const [place, turn] of pose.local.entries()) {
-    pose.turned.push(turn);
-    pose.at.push(pose.moved[place]);
-  }
+  pose.turned = [...pose.local];
+  pose.at = [...pose.moved];
   for (let place = 0; place < rig.parents.length; place++) {
     _join(rig, pose, place);
   }
@@ -136,8 +132,11 @@ function _join(rig, pose, place) {
     pose.turned[place] = pose.local[place];
     pose.at[place] = pose.moved[place];
   } else {
-    pose.turned[place] = times(pose.turned[above], pose.local[place]);
-    pose.at[place] = plus(pose.at[above], rotated(pose.turned[above], pose.moved[place]));
+    const turn = pose.turned[above];
+    const [x, y, z] = rotated(turn, pose.moved[place]);
+    const [ax, ay, az] = pose.at[above];
+    pose.turned[place] = times(turn, pose.local[place]);
+    pose.at[place] = [ax + x, ay + y, az + z];
   }
 }
 
@@ -440,15 +439,18 @@ function _shift(rig, ends, balls, side, held, across, whole, first) {
       continue;
     }
     const [mx, my, mz, size] = balls[i];
-    for (let k = 0; k < rig.capsules.length; k++) {
+    for (let k = 0; k < balls.length; k++) {
+      const [ox, oy, oz, most] = balls[k];
+      const dx = ox - mx;
+      const dy = oy - my;
+      const dz = oz - mz;
+      const reach = most + size;
+      if (dx * dx + dy * dy + dz * dz >= reach * reach) {
+        continue; // most are nowhere near
+      }
       const other = rig.capsules[k];
       if (other.arm === side) {
         continue;
-      }
-      const [ox, oy, oz, most] = balls[k];
-      const reach = most + size;
-      if ((ox - mx) * (ox - mx) + (oy - my) * (oy - my) + (oz - mz) * (oz - mz) >= reach * reach) {
-        continue; // most are nowhere near
       }
       let share = own;
       if (other.arm >= 0) {
@@ -521,23 +523,32 @@ function _along(ends, i, k) {
 }
 
 /**
- * Return the shortest way from the line that begins at `ends[k]` to the one at `ends[i]`, and its length.
+ * Return the shortest way from the line that begins at `ends[k]` to the one at `ends[i]`, and its length. Its vectors are
+ * written out, since a guarded pose asks some thirty times.
  * @param {[number, number, number][]} ends
  * @param {number} i
  * @param {number} k
  * @returns {[number, number, number, number]}
  */
 export function apart(ends, i, k) {
-  const a = ends[i];
-  const c = ends[k];
-  const u = minus(ends[i + 1], a);
-  const v = minus(ends[k + 1], c);
-  const w = minus(a, c);
-  const uu = dot(u, u);
-  const uv = dot(u, v);
-  const vv = dot(v, v);
-  const uw = dot(u, w);
-  const vw = dot(v, w);
+  const [ax, ay, az] = ends[i];
+  const [bx, by, bz] = ends[i + 1];
+  const [cx, cy, cz] = ends[k];
+  const [dx, dy, dz] = ends[k + 1];
+  const ux = bx - ax;
+  const uy = by - ay;
+  const uz = bz - az;
+  const vx = dx - cx;
+  const vy = dy - cy;
+  const vz = dz - cz;
+  const wx = ax - cx;
+  const wy = ay - cy;
+  const wz = az - cz;
+  const uu = ux * ux + uy * uy + uz * uz;
+  const uv = ux * vx + uy * vy + uz * vz;
+  const vv = vx * vx + vy * vy + vz * vz;
+  const uw = ux * wx + uy * wy + uz * wz;
+  const vw = vx * wx + vy * wy + vz * wz;
   let s = 0;
   let t = 0;
   if (uu > 1e-12) {
@@ -557,6 +568,8 @@ export function apart(ends, i, k) {
   } else if (vv > 1e-12) {
     t = Math.min(Math.max(vw / vv, 0), 1);
   }
-  const [x, y, z] = minus(plus(w, scaled(u, s)), scaled(v, t));
+  const x = wx + ux * s - vx * t;
+  const y = wy + uy * s - vy * t;
+  const z = wz + uz * s - vz * t;
   return [x, y, z, Math.sqrt(x * x + y * y + z * z)];
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from importlib import import_module
 from types import ModuleType
 
 import pytest
@@ -37,3 +38,20 @@ def test_an_edit_while_the_plots_are_imported_does_not_wait_for_them(qtbot, monk
     monkeypatch.delitem(sys.modules, PLOTS)
     asked[0]()
     assert len(asked) == 2, "it is asked for again, since it is not there"
+
+
+def test_the_page_of_actions_is_there_before_one_is_selected(qtbot, toy, document):
+    session = StageSession(document)
+    made = []
+
+    def fetch(modules, go_on):
+        for module in modules:
+            import_module(module)
+        go_on()
+
+    panel = PropertiesPanel(document, session, fetch, made.append)
+    qtbot.addWidget(panel)
+    qtbot.waitUntil(lambda: len(made) == 1)
+    assert panel.pages.currentIndex() == 0, "the layer is shown still"
+    session.selection.select_actions((toy.id(document.project, "rest long"),))
+    assert panel.pages.currentWidget() is made[0]

@@ -405,3 +405,47 @@ def test_the_search_is_wide_enough_to_read_what_is_sought(table, width):
     assert (panel.fill.y() > panel.search.y() + 10) == (width == 420), "a second line where one is too short"
     for button in (panel.kept, panel.fill, panel.replace_button):
         assert button.width() >= button.sizeHint().width()
+
+
+def test_what_was_found_is_labelled_by_keys_alone(table):
+    steps = table.steps()
+    table.click("rest short", "kind")
+    table.key(KEY.Key_F, CTRL)
+    assert table.panel.search.hasFocus()
+    table.type("rest -loop -to -scratch -cough")
+    assert table.view.hasFocus() and len(table.view.selectedIndexes()) == 4
+    table.type("f")
+    assert {table.says(name, "kind") for name in ("rest short", "rest beat lf", "rest wave rt")} == {"fidget"}
+    table.key(KEY.Key_F, CTRL)
+    table.type("beat")
+    for _ in range(5):
+        table.key(KEY.Key_Right)
+    assert {COLUMNS[i.column()] for i in table.view.selectedIndexes()} == {"tags"}
+    table.type("small")
+    assert table.says("rest beat lf", "tags") == table.says("up beat", "tags") == "small"
+    assert table.steps() == steps + 2
+
+
+def test_without_the_table_the_same_key_finds_clips(toys, table):
+    table.drive.canvas.setFocus()
+    table.drive.do("find")
+    assert table.drive.library.search.hasFocus()
+
+
+def test_stances_are_filled_from_parts_of_names(toys, table):
+    toys.document.edit(
+        "Remove", lambda p: edits.remove_actions(p, [a.id for a in p.actions() if a.kind != "stance"])
+    )
+    table.drive.wait(lambda: table.rows.project is table.drive.document.project)
+    panel, steps = table.panel, table.steps()
+    QTest.mouseClick(panel.names_button, Qt.MouseButton.LeftButton)
+    assert panel.naming.pattern.hasFocus()
+    QTest.keyClicks(panel.naming.pattern, "{stance} to {where}")
+    assert "{where} is no field" in panel.naming.said.text() and not panel.naming.go.isEnabled()
+    panel.naming.pattern.clear()
+    QTest.keyClicks(panel.naming.pattern, "{stance} to {end}")
+    assert panel.naming.said.text() == "4 rows. rest to up: Stance rest, Ends in up"
+    QTest.keyClick(panel.naming.pattern, KEY.Key_Return)
+    found = {a.name: a.kind for a in toys.document.project.actions()}
+    assert found["rest to up"] == found["far to up"] == "transition" and table.steps() == steps + 1
+    panel.names_button.setChecked(False)

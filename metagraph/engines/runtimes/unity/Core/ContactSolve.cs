@@ -159,15 +159,8 @@ namespace Metagraph
         /// <summary>Compute where all joints are.</summary>
         public static void Spread(ContactRig rig, ContactPose pose)
         {
-            pose.Turned = new List<(double, double, double, double)>();
-            pose.At = new List<(double, double, double)>();
-            foreach (var one in pose.Local.Select((item, n) => (n, item)))
-            {
-                var place = one.Item1;
-                var turn = one.Item2;
-                pose.Turned.Add(turn);
-                pose.At.Add(pose.Moved[place]);
-            }
+            pose.Turned = pose.Local.ToList();
+            pose.At = pose.Moved.ToList();
             for (int place = 0; place < rig.Parents.Count; place++)
             {
                 Join(rig, pose, place);
@@ -184,11 +177,17 @@ namespace Metagraph
             }
             else
             {
-                pose.Turned[place] = PlainVectorsRules.Times(pose.Turned[above], pose.Local[place]);
-                pose.At[place] = PlainVectorsRules.Plus(
-                    pose.At[above],
-                    PlainVectorsRules.Rotated(pose.Turned[above], pose.Moved[place])
-                );
+                var turn = pose.Turned[above];
+                var found = PlainVectorsRules.Rotated(turn, pose.Moved[place]);
+                double x = found.Item1;
+                double y = found.Item2;
+                double z = found.Item3;
+                var found2 = pose.At[above];
+                double ax = found2.Item1;
+                double ay = found2.Item2;
+                double az = found2.Item3;
+                pose.Turned[place] = PlainVectorsRules.Times(turn, pose.Local[place]);
+                pose.At[place] = (ax + x, ay + y, az + z);
             }
         }
 
@@ -571,22 +570,25 @@ namespace Metagraph
                 double my = found.Item2;
                 double mz = found.Item3;
                 double size = found.Item4;
-                for (int k = 0; k < rig.Capsules.Count; k++)
+                for (int k = 0; k < balls.Count; k++)
                 {
-                    var other = rig.Capsules[k];
-                    if (other.Arm == side)
-                    {
-                        continue;
-                    }
                     var found2 = balls[k];
                     double ox = found2.Item1;
                     double oy = found2.Item2;
                     double oz = found2.Item3;
                     double most = found2.Item4;
+                    var dx = ox - mx;
+                    var dy = oy - my;
+                    var dz = oz - mz;
                     var reach = most + size;
-                    if ((ox - mx) * (ox - mx) + (oy - my) * (oy - my) + (oz - mz) * (oz - mz) >= reach * reach)
+                    if (dx * dx + dy * dy + dz * dz >= reach * reach)
                     {
                         continue; // most are nowhere near
+                    }
+                    var other = rig.Capsules[k];
+                    if (other.Arm == side)
+                    {
+                        continue;
                     }
                     var share = own;
                     if (other.Arm >= 0)
@@ -672,20 +674,41 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return the shortest way from the line that begins at `ends[k]` to the one at `ends[i]`, and its length.
+        /// Return the shortest way from the line that begins at `ends[k]` to the one at `ends[i]`, and its length. Its vectors
+        /// are written out, since a guarded pose asks some thirty times.
         /// </summary>
         public static (double, double, double, double) Apart(List<(double, double, double)> ends, int i, int k)
         {
-            var a = ends[i];
-            var c = ends[k];
-            var u = PlainVectorsRules.Minus(ends[i + 1], a);
-            var v = PlainVectorsRules.Minus(ends[k + 1], c);
-            var w = PlainVectorsRules.Minus(a, c);
-            var uu = PlainVectorsRules.Dot(u, u);
-            var uv = PlainVectorsRules.Dot(u, v);
-            var vv = PlainVectorsRules.Dot(v, v);
-            var uw = PlainVectorsRules.Dot(u, w);
-            var vw = PlainVectorsRules.Dot(v, w);
+            var found = ends[i];
+            double ax = found.Item1;
+            double ay = found.Item2;
+            double az = found.Item3;
+            var found2 = ends[i + 1];
+            double bx = found2.Item1;
+            double by = found2.Item2;
+            double bz = found2.Item3;
+            var found3 = ends[k];
+            double cx = found3.Item1;
+            double cy = found3.Item2;
+            double cz = found3.Item3;
+            var found4 = ends[k + 1];
+            double dx = found4.Item1;
+            double dy = found4.Item2;
+            double dz = found4.Item3;
+            var ux = bx - ax;
+            var uy = by - ay;
+            var uz = bz - az;
+            var vx = dx - cx;
+            var vy = dy - cy;
+            var vz = dz - cz;
+            var wx = ax - cx;
+            var wy = ay - cy;
+            var wz = az - cz;
+            var uu = ux * ux + uy * uy + uz * uz;
+            var uv = ux * vx + uy * vy + uz * vz;
+            var vv = vx * vx + vy * vy + vz * vz;
+            var uw = ux * wx + uy * wy + uz * wz;
+            var vw = vx * wx + vy * wy + vz * wz;
             var s = 0.0;
             var t = 0.0;
             if (uu > 1e-12)
@@ -713,13 +736,9 @@ namespace Metagraph
             {
                 t = Math.Min(Math.Max(vw / vv, 0.0), 1.0);
             }
-            var found = PlainVectorsRules.Minus(
-                PlainVectorsRules.Plus(w, PlainVectorsRules.Scaled(u, s)),
-                PlainVectorsRules.Scaled(v, t)
-            );
-            double x = found.Item1;
-            double y = found.Item2;
-            double z = found.Item3;
+            var x = wx + ux * s - vx * t;
+            var y = wy + uy * s - vy * t;
+            var z = wz + uz * s - vz * t;
             return (x, y, z, Math.Sqrt(x * x + y * y + z * z));
         }
     }

@@ -112,12 +112,8 @@ class ContactPose:
 
 # Compute where all joints are.
 static func spread(rig, pose):
-	pose.turned = []
-	pose.at = []
-	for place in range(pose.local.size()):
-		var turn = pose.local[place]
-		pose.turned.append(turn)
-		pose.at.append(pose.moved[place])
+	pose.turned = Util.list(pose.local)
+	pose.at = Util.list(pose.moved)
 	for place in range(rig.parents.size()):
 		_join(rig, pose, place)
 
@@ -128,8 +124,17 @@ static func _join(rig, pose, place):
 		pose.turned[place] = pose.local[place]
 		pose.at[place] = pose.moved[place]
 	else:
-		pose.turned[place] = PlainVectors.times(pose.turned[above], pose.local[place])
-		pose.at[place] = PlainVectors.plus(pose.at[above], PlainVectors.rotated(pose.turned[above], pose.moved[place]))
+		var turn = pose.turned[above]
+		var both = PlainVectors.rotated(turn, pose.moved[place])
+		var x = both[0]
+		var y = both[1]
+		var z = both[2]
+		var both2 = pose.at[above]
+		var ax = both2[0]
+		var ay = both2[1]
+		var az = both2[2]
+		pose.turned[place] = PlainVectors.times(turn, pose.local[place])
+		pose.at[place] = [ax + x, ay + y, az + z]
 
 
 # Move hands to their goals, then push hands and forearms out of the body; return whether anything moved. Call `spread` first.
@@ -388,18 +393,21 @@ static func _shift(rig, ends, balls, side, held, across, whole, first):
 		var my = both[1]
 		var mz = both[2]
 		var size = both[3]
-		for k in range(rig.capsules.size()):
-			var other = rig.capsules[k]
-			if other.arm == side:
-				continue
+		for k in range(balls.size()):
 			var both2 = balls[k]
 			var ox = both2[0]
 			var oy = both2[1]
 			var oz = both2[2]
 			var most = both2[3]
+			var dx = ox - mx
+			var dy = oy - my
+			var dz = oz - mz
 			var reach = most + size
-			if (ox - mx) * (ox - mx) + (oy - my) * (oy - my) + (oz - mz) * (oz - mz) >= reach * reach:
+			if dx * dx + dy * dy + dz * dz >= reach * reach:
 				continue  # most are nowhere near
+			var other = rig.capsules[k]
+			if other.arm == side:
+				continue
 			var share = own
 			if other.arm >= 0:
 				share = Util.least(own, 1.0 - across)
@@ -457,18 +465,39 @@ static func _along(ends, i, k):
 	return s
 
 
-# Return the shortest way from the line that begins at `ends[k]` to the one at `ends[i]`, and its length.
+# Return the shortest way from the line that begins at `ends[k]` to the one at `ends[i]`, and its length. Its vectors are written
+# out, since a guarded pose asks some thirty times.
 static func apart(ends, i, k):
-	var a = ends[i]
-	var c = ends[k]
-	var u = PlainVectors.minus(ends[i + 1], a)
-	var v = PlainVectors.minus(ends[k + 1], c)
-	var w = PlainVectors.minus(a, c)
-	var uu = PlainVectors.dot(u, u)
-	var uv = PlainVectors.dot(u, v)
-	var vv = PlainVectors.dot(v, v)
-	var uw = PlainVectors.dot(u, w)
-	var vw = PlainVectors.dot(v, w)
+	var both = ends[i]
+	var ax = both[0]
+	var ay = both[1]
+	var az = both[2]
+	var both2 = ends[i + 1]
+	var bx = both2[0]
+	var by = both2[1]
+	var bz = both2[2]
+	var both3 = ends[k]
+	var cx = both3[0]
+	var cy = both3[1]
+	var cz = both3[2]
+	var both4 = ends[k + 1]
+	var dx = both4[0]
+	var dy = both4[1]
+	var dz = both4[2]
+	var ux = bx - ax
+	var uy = by - ay
+	var uz = bz - az
+	var vx = dx - cx
+	var vy = dy - cy
+	var vz = dz - cz
+	var wx = ax - cx
+	var wy = ay - cy
+	var wz = az - cz
+	var uu = ux * ux + uy * uy + uz * uz
+	var uv = ux * vx + uy * vy + uz * vz
+	var vv = vx * vx + vy * vy + vz * vz
+	var uw = ux * wx + uy * wy + uz * wz
+	var vw = vx * wx + vy * wy + vz * wz
 	var s = 0.0
 	var t = 0.0
 	if uu > 1e-12:
@@ -484,8 +513,7 @@ static func apart(ends, i, k):
 			s = Util.least(Util.most(-uw / uu, 0.0), 1.0)
 	elif vv > 1e-12:
 		t = Util.least(Util.most(vw / vv, 0.0), 1.0)
-	var both = PlainVectors.minus(PlainVectors.plus(w, PlainVectors.scaled(u, s)), PlainVectors.scaled(v, t))
-	var x = both[0]
-	var y = both[1]
-	var z = both[2]
+	var x = wx + ux * s - vx * t
+	var y = wy + uy * s - vy * t
+	var z = wz + uz * s - vz * t
 	return [x, y, z, sqrt(x * x + y * y + z * z)]
