@@ -238,9 +238,9 @@ def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
 
 
 def _find_axes(clip: Skeleton, project: Skeleton) -> Array | None:
-    """Return the turn `[4]` that leads a clip's bones, seen from their joints, to those of the project, where
-    one turn does it for all: one file was written with Z up, another with Y up. None where there is none, or
-    hardly any.
+    """Return the turn `[4]` that leads a clip's bones, seen from their joints, to those of the project, as
+    between a file written with Z up and one with Y up; None if no single turn does that, or hardly any is
+    needed.
     """
     shared = [
         (j, project.index(name))

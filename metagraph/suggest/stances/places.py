@@ -34,7 +34,7 @@ LOOP_VOTE = (
     1.5  # how much the name of a clip that rests in a stance counts to name it, beside one that begins there
 )
 ALIKE, ALIKE_VOTES = 0.8, 2.0  # share of a pose's clips that call it alike, and how many at least
-ONE_STANCE = 0.08  # heights within which poses that are called alike are one stance
+ONE_STANCE = 0.1  # heights within which poses that are called alike are one stance
 # The same for poses between which no word tells: each word calls both about as often
 ONE_POSE, BOTH = 0.06, 0.95
 LEAST_VOTES = 0.5  # clips, below which a word says nothing about a pose
