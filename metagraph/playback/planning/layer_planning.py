@@ -144,7 +144,11 @@ def draft(
             if not meta.written:
                 reports.append(Report(meta.request.id, "no-stance", why, layer, meta.start))
         return LayerDraft(layer, performer, False, done, waits, reports, old.past, cursor, written)
-    performer.begun = {cue.meta for cue in kept if cue.meta in waiting}
+    # The chain that plays is the last that does: an earlier action may have had the same key.
+    if len(kept) > 0 and len(kept) < len(old.cues):
+        last, following = kept[-1], old.cues[len(kept)]
+        if last.meta == following.meta and following.start <= last.end:
+            performer.begun = {last.meta}
     if len(kept) > 0 and kept[-1].end > now:
         running = next((meta for meta in old.metas if meta.key == kept[-1].meta), None)
         performer.make_way(running, asked, now, running is not None and running.request.id in stopped)

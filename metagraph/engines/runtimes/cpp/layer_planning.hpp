@@ -223,13 +223,14 @@ inline Ref<LayerDraft> draft(
         }
         return lang::made<LayerDraft>(layer, performer, false, done, waits, reports, old->past, cursor, written);
     }
-    Set<std::string> found;
-    for (const auto& cue : kept) {
-        if (lang::contains(waiting, cue->meta)) {
-            found.insert(cue->meta);
+    // The chain that plays is the last that does: an earlier action may have had the same key.
+    if (lang::len(kept) > 0 && lang::len(kept) < lang::len(old->cues)) {
+        Ref<Cue> last = lang::at(kept, -1);
+        Ref<Cue> following = lang::at(old->cues, lang::len(kept));
+        if (last->meta == following->meta && following->start <= last->end) {
+            performer->begun = Set<std::string>{last->meta};
         }
     }
-    performer->begun = found;
     if (lang::len(kept) > 0 && lang::at(kept, -1)->end > now) {
         Ref<MetaAction> first;
         for (const auto& meta3 : old->metas) {
@@ -246,13 +247,13 @@ inline Ref<LayerDraft> draft(
         for (const auto& cue : performer->cues) {
             begun.insert(cue->end - cue->blend_out);
         }
-        List<Ref<Rest>> found2;
+        List<Ref<Rest>> found;
         for (const auto& rest : old->rests) {
             if (rest->fade_start < now || lang::contains(begun, rest->start)) {
-                found2.push_back(rest);
+                found.push_back(rest);
             }
         }
-        performer->rests = found2;
+        performer->rests = found;
     }
     performer->free = std::max(now - (performer->ready() - performer->free), performer->free);
     List<Ref<Report>> delayed{};

@@ -138,7 +138,14 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
     }
     return new LayerDraft(layer, performer, false, done, waits, reports, old.past, cursor, written);
   }
-  performer.begun = new Set(kept.filter((cue) => waiting.has(cue.meta)).map((cue) => cue.meta));
+  // The chain that plays is the last that does: an earlier action may have had the same key.
+  if (kept.length > 0 && kept.length < old.cues.length) {
+    const last = kept[kept.length - 1];
+    const following = old.cues[kept.length];
+    if (last.meta === following.meta && following.start <= last.end) {
+      performer.begun = new Set([last.meta]);
+    }
+  }
   if (kept.length > 0 && kept[kept.length - 1].end > now) {
     const running = old.metas.find((meta) => meta.key === kept[kept.length - 1].meta) ?? null;
     performer.makeWay(running, asked, now, running !== null && stopped.has(running.request.id));

@@ -164,7 +164,16 @@ namespace Metagraph
                 }
                 return new LayerDraft(layer, performer, false, done, waits, reports, old.Past, cursor, written);
             }
-            performer.Begun = new HashSet<string>(kept.Where(cue => waiting.Contains(cue.Meta)).Select(cue => cue.Meta));
+            // The chain that plays is the last that does: an earlier action may have had the same key.
+            if (kept.Count > 0 && kept.Count < old.Cues.Count)
+            {
+                var last = kept[kept.Count - 1];
+                var following = old.Cues[kept.Count];
+                if (last.Meta == following.Meta && following.Start <= last.End)
+                {
+                    performer.Begun = new HashSet<string> { last.Meta };
+                }
+            }
             if (kept.Count > 0 && kept[kept.Count - 1].End > now)
             {
                 var running = old.Metas.Where(meta => meta.Key == kept[kept.Count - 1].Meta).FirstOrDefault();

@@ -138,11 +138,12 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 			if not meta.written:
 				reports.append(MetaPlan.Report.new(meta.request.id, "no-stance", why, layer, meta.start))
 		return LayerDraft.new(layer, performer, false, done, waits, reports, old.past, cursor, written)
-	var found = {}
-	for cue in kept:
-		if waiting.has(cue.meta):
-			Util.add_to(found, cue.meta)
-	performer.begun = found
+	# The chain that plays is the last that does: an earlier action may have had the same key.
+	if kept.size() > 0 and kept.size() < old.cues.size():
+		var last = kept[-1]
+		var following = old.cues[kept.size()]
+		if last.meta == following.meta and following.start <= last.end:
+			performer.begun = {last.meta: true}
 	if kept.size() > 0 and kept[-1].end > now:
 		var first = null
 		for meta3 in old.metas:
@@ -155,11 +156,11 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 		var begun = {}
 		for cue in performer.cues:
 			Util.add_to(begun, cue.end - cue.blend_out)
-		var found2 = []
+		var found = []
 		for rest in old.rests:
 			if rest.fade_start < now or begun.has(rest.start):
-				found2.append(rest)
-		performer.rests = found2
+				found.append(rest)
+		performer.rests = found
 	performer.free_ = Util.most(now - (performer.ready() - performer.free_), performer.free_)
 	var delayed
 	var both2 = Replan.delay(asked, performer.ready(), project.settings)
