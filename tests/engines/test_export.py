@@ -38,6 +38,7 @@ from metagraph.graph import edits
 from metagraph.graph.check import check_project
 from metagraph.graph.expand import count_machine_size, list_connections
 from metagraph.graph.model import LAYERS, Markov, Project
+from metagraph.graph.repeating import cycle_of
 from metagraph.graph.requests import Line
 from metagraph.motion.skeleton import make_names_unique
 from metagraph.playback.life.voice import make_silent_voice
@@ -69,6 +70,8 @@ def same(back: Project, project: Project) -> None:
         for action in graph.actions.values():
             start, end = project.span(action)
             timing = replace(action.timing, start=start, end=None if action.timing.end is None else end)
+            if not cycle_of(action.kind, action.timing, start, end):  # loops and moments do not repeat
+                timing = replace(timing, repeat=0.0)
             shown[action.id] = replace(action, timing=timing)
         assert back.graphs[layer].actions == shown
         assert list(back.graphs[layer].actions) == list(shown)
