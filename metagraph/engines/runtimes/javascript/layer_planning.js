@@ -138,14 +138,7 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
     }
     return new LayerDraft(layer, performer, false, done, waits, reports, old.past, cursor, written);
   }
-  // The chain that plays is the last that does: an earlier action may have had the same key.
-  if (kept.length > 0 && kept.length < old.cues.length) {
-    const last = kept[kept.length - 1];
-    const following = old.cues[kept.length];
-    if (last.meta === following.meta && following.start <= last.end) {
-      performer.begun = new Set([last.meta]);
-    }
-  }
+  performer.begun = _begun(old, kept.length);
   if (kept.length > 0 && kept[kept.length - 1].end > now) {
     const running = old.metas.find((meta) => meta.key === kept[kept.length - 1].meta) ?? null;
     performer.makeWay(running, asked, now, running !== null && stopped.has(running.request.id));
@@ -166,6 +159,25 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   const { 0: placed, 1: moved } = replan([...future, ...written, ...asked], project.settings, busy);
   const every = [...reports, ...delayed, ...moved];
   return new LayerDraft(layer, performer, true, done, placed, every, old.past, cursor, written);
+}
+
+/**
+ * Return the key of the meta action whose chain of transitions plays where the first cues are kept; none if none does. An
+ * earlier action may have had the same key, so that only the last cue can be of a chain.
+ * @param {LayerPlan} old
+ * @param {number} kept
+ * @returns {Set<string>}
+ */
+function _begun(old, kept) {
+  const out = new Set([]);
+  if (0 < kept && kept < old.cues.length) {
+    const last = old.cues[kept - 1];
+    const following = old.cues[kept];
+    if (last.meta === following.meta && following.start <= last.end) {
+      out.add(last.meta);
+    }
+  }
+  return out;
 }
 
 /**
