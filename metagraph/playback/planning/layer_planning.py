@@ -147,7 +147,7 @@ def draft(
             if not meta.written:
                 reports.append(Report(meta.request.id, "no-stance", why, layer, meta.start))
         return LayerDraft(layer, performer, False, done, waits, reports, old.past, cursor, written)
-    performer.begun = {cue.meta for cue in kept if cue.meta in waiting}
+    performer.begun = _begun(old, len(kept))
     if len(kept) > 0 and kept[-1].end > now:
         running = next((meta for meta in old.metas if meta.key == kept[-1].meta), None)
         leaves = _leaves(running, stopped, track, now)
@@ -174,6 +174,18 @@ def _leaves(running: MetaAction | None, stopped: AbstractSet[str], track: Track,
         return False
     own = running.written and running.request.kind == "gesture"
     return running.request.id in stopped or (own and track.hushed_at(now))
+
+
+def _begun(old: LayerPlan, kept: int) -> set[str]:
+    """Return the key of the meta action whose chain of transitions plays where the first cues are kept; none
+    if none does. An earlier action may have had the same key, so that only the last cue can be of a chain.
+    """
+    out: set[str] = set()
+    if 0 < kept < len(old.cues):
+        last, following = old.cues[kept - 1], old.cues[kept]
+        if last.meta == following.meta and following.start <= last.end:
+            out.add(last.meta)
+    return out
 
 
 def in_time(request: MetaRequest, moods: Moods) -> MetaRequest:

@@ -31,7 +31,7 @@ export const THOUGHTFUL = ["chin", "thinking", "pondering", "musing"]; // words 
  * @returns {string}
  */
 export function musing(stances) {
-  for (const [ident, stance] of stances) {
+  for (const { 0: ident, 1: stance } of stances) {
     for (const word of splitWords(stance.name.toLowerCase())) {
       if (THOUGHTFUL.includes(word) || THOUGHTFUL.includes(partedLast(word, "_")[2])) {
         return ident;

@@ -110,7 +110,7 @@ export function draft(
   const again = new Set(replaced);
   if (chain !== null) {
     let more;
-    [more, cursor] = write(chain, seed, end, kinds, old.cursor);
+    ({ 0: more, 1: cursor } = write(chain, seed, end, kinds, old.cursor));
     for (const meta of [...old.written, ...more]) {
       if (meta.start >= now) {
         written.push(meta);
@@ -156,7 +156,7 @@ export function draft(
     }
     return new LayerDraft(layer, performer, false, done, waits, reports, old.past, cursor, written);
   }
-  performer.begun = new Set(kept.filter((cue) => waiting.has(cue.meta)).map((cue) => cue.meta));
+  performer.begun = _begun(old, kept.length);
   if (kept.length > 0 && kept[kept.length - 1].end > now) {
     const running = old.metas.find((meta) => meta.key === kept[kept.length - 1].meta) ?? null;
     const leaves = _leaves(running, stopped, track, now);
@@ -168,14 +168,14 @@ export function draft(
   }
   performer.free = Math.max(now - (performer.ready - performer.free), performer.free);
   let delayed;
-  [asked, delayed] = delay(asked, performer.ready, project.settings);
+  ({ 0: asked, 1: delayed } = delay(asked, performer.ready, project.settings));
   let busy = -Infinity; // what runs keeps the time it was wanted for, from the models
   for (const meta of done) {
     if (!meta.written) {
       busy = Math.max(busy, meta.end);
     }
   }
-  const [placed, moved] = replan([...future, ...written, ...asked], project.settings, busy);
+  const { 0: placed, 1: moved } = replan([...future, ...written, ...asked], project.settings, busy);
   const every = [...reports, ...delayed, ...moved];
   return new LayerDraft(layer, performer, true, done, placed, every, old.past, cursor, written);
 }
@@ -195,6 +195,25 @@ function _leaves(running, stopped, track, now) {
   }
   const own = running.written && running.request.kind === "gesture";
   return stopped.has(running.request.id) || (own && track.hushedAt(now));
+}
+
+/**
+ * Return the key of the meta action whose chain of transitions plays where the first cues are kept; none if none does. An
+ * earlier action may have had the same key, so that only the last cue can be of a chain.
+ * @param {LayerPlan} old
+ * @param {number} kept
+ * @returns {Set<string>}
+ */
+function _begun(old, kept) {
+  const out = new Set([]);
+  if (0 < kept && kept < old.cues.length) {
+    const last = old.cues[kept - 1];
+    const following = old.cues[kept];
+    if (last.meta === following.meta && following.start <= last.end) {
+      out.add(last.meta);
+    }
+  }
+  return out;
 }
 
 /**
