@@ -276,9 +276,9 @@ def exporting() -> None:
 
     out = on_sample()
     dialog = ExportDialog(out.document, out.jobs, out.window)
-    dialog.folder.setText("game/playcanvas")
     dialog.open()
     dialog._select("playcanvas")
+    dialog.folder.setText("game/playcanvas")
     wait(600)
     shoot(dialog, "export.png")
     dialog.reject()
