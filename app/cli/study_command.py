@@ -109,6 +109,14 @@ def add_arguments(parser: ArgumentParser) -> None:
         help="mean number of mistakes in a task",
     )
     made.add_argument(
+        "--hidden",
+        type=float,
+        nargs=2,
+        default=(1.0, 1.0),
+        metavar=("META", "MANUAL"),
+        help="with --like: times as long a task takes where clips have numbers instead of names",
+    )
+    made.add_argument(
         "--sus", type=float, nargs=2, default=(78.0, 52.0), metavar=("META", "MANUAL"), help="mean SUS scores"
     )
 
@@ -196,6 +204,7 @@ def simulate_study(options: Namespace) -> int:
         spread=options.spread,
         slips=tuple(options.slips),
         sus=tuple(options.sus),
+        hidden=tuple(options.hidden),
     )
     if options.like is not None:
         from metagraph.research.study.simulation.like_study import write_like
@@ -246,6 +255,8 @@ def _facts(results: Results) -> dict[str, Any]:
         "otherwise": {} if found is None else {w.name: _estimate(w.ratio) for w in found.ways},
         "odd": [] if found is None else list(found.odd),
         "vanished_seconds": {c: v.seconds for c, v in results.vanished.items()},
+        "by_names": {n: _estimate(e) for n, e in results.by_names.items()},
+        "names_ratio": None if results.names_ratio is None else _estimate(results.names_ratio),
         "slope": {c: _estimate(x.slope) for c, x in results.curves.items()},
         "second_sitting": None if time is None or time.order is None else _estimate(time.order.second),
         "measures": {

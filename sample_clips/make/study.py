@@ -63,13 +63,15 @@ TASKS = {
 TITLES = {"ten": "Ten clips", "twenty": "Twenty clips"}
 
 HEAD = """\
-# An example study: the meta-graph against a state machine drawn by hand, on 10 and on 20 clips. docs/researchers/study-file.md says what each field does.
+# An example study: the meta-graph against a state machine drawn by hand, on 10 and on 20 clips. Everybody has names in one of the two
+# tasks and numbers in the other. docs/researchers/study-file.md says what each field does.
 study: 1
 title: Two ways to wire a character
-participants: 12
+participants: 16
 seed: 1
 conditions: [meta, manual]
 order: latin
+names: both
 breaks: 5
 questionnaires: [sus, tlx]
 when: after_condition
@@ -87,8 +89,9 @@ instructions: |
   A character rests in a **stance**: a loop. Out of a stance it plays **gestures**, which say something, and **fidgets**, which do not,
   and goes back to it. A **transition** takes it from one stance to another.
 
-  A clip's name tells its stance first, then what it is: `on_hips__shrug_bt_01` is a shrug out of *on hips*,
-  `hands_at_sides__to__on_hips` the transition between the two. Fidgets are what one does without thinking: adjusting, rubbing, swinging.
+  Where clips have names, a name tells the stance first, then what the clip is: `on_hips__shrug_bt_01` is a shrug out of *on hips*,
+  `hands_at_sides__to__on_hips` the transition between the two. Where clips have numbers, watch them. Fidgets are what one does without
+  thinking: adjusting, rubbing, swinging.
 
   Please wire all clips of each task so that the character can play every one of them, and get back to where it began.
 thanks: |
@@ -133,9 +136,9 @@ def text() -> str:
             f"reference: {task}{SUFFIX}\n"
         )
         out += (
-            "  instructions: Wire all clips, arms and head, each to the stance its name tells.\n"
+            "  instructions: Wire all clips, arms and head, each to its stance.\n"
             if task == "twenty"
-            else ("  instructions: Wire all clips, each to the stance its name tells.\n")
+            else ("  instructions: Wire all clips, each to its stance.\n")
         )
         out += f"  clips:\n{clips(names)}"
     return out
