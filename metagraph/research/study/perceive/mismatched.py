@@ -2,12 +2,13 @@
 stretch, one after the other; which sound belongs to it?
 
 It asks how well motion goes with speech and not how real it looks, as the image is the same in both. Half of
-the answers are right by chance.
+the answers are right by chance. Faces are still, as lips would give the answer away.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 
 import yaml
 
@@ -43,13 +44,11 @@ def make_mismatched_plan(
     if not systems:
         raise ValueError("there is no system to ask about")
     conditions: dict[str, object] = {}
-    for name, shows in systems.items():
-        conditions[f"{name}-{OWN}"] = {"title": f"{name}, its own sound", **shows}
-        conditions[f"{name}-{OTHER}"] = {
-            "title": f"{name}, another sound",
-            **shows,
-            "sound": "mismatched",
-        }
+    for name, shown in systems.items():
+        shows = {**shown, "face": "still"}  # or lips would tell
+        conditions[f"{name}-{OWN}"] = {"title": f"{name}, its own sound", **deepcopy(shows)}
+        other = {"title": f"{name}, another sound", **deepcopy(shows), "sound": "mismatched"}
+        conditions[f"{name}-{OTHER}"] = other
     plan: dict[str, object] = {
         "perceive": 1,
         "title": title,
