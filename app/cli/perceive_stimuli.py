@@ -147,7 +147,7 @@ class Stimuli:
             shown, folder = self._performance(made)
         else:
             shown, folder = self._motion(name, made, item)
-        shown = still_face(shown) if made.face == "still" else shown
+        shown = make_face_still(shown) if made.face == "still" else shown
         if shown.skeleton is None:
             raise self._failure(name, "its project has no clips to draw")
         start = item.start if made.conversation is not None or not apart else 0.0
@@ -289,11 +289,11 @@ def replace_struct(value: Any, **fields: Any) -> Any:
     return changed(value, **fields)
 
 
-def still_face(shown: ShownPlayback) -> ShownPlayback:
+def make_face_still(shown: ShownPlayback) -> ShownPlayback:
     """Return the same with faces that do not follow speech, of all who are seen."""
     still = {"lips": 0.0, "expressions": 0.0, "accent_brows": 0.0, "accent_blinks": 0.0}
     project = replace(shown.project, life=replace_struct(shown.project.life, **still))
-    return replace(shown, project=project, others=tuple(still_face(one) for one in shown.others))
+    return replace(shown, project=project, others=tuple(make_face_still(one) for one in shown.others))
 
 
 def with_clip(project: Project, ident: str, clip: Clip) -> Project:

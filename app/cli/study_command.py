@@ -14,7 +14,7 @@ from app.cli.perceive_command import add_arguments as perceive_arguments
 from app.cli.progress_line import ProgressLine
 from app.cli.study_agreement import add_arguments as agreement_arguments
 from app.cli.study_people import add_arguments as people_arguments
-from app.cli.study_pilot import pilot_arguments, run_pilot
+from app.cli.study_pilot import add_pilot_arguments, run_pilot
 from app.cli.study_planning import add_arguments as plan_arguments
 from app.cli.study_replaying import add_arguments as replay_arguments
 from app.cli.study_run import check_arguments, run_arguments
@@ -46,7 +46,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         )
 
     run_arguments(action("run", "guide a participant through a sitting, in the window", run_study))
-    pilot_arguments(
+    add_pilot_arguments(
         action("pilot", "run a pilot of 25 minutes: instruct, train, record, score, pack as BIDS", run_pilot)
     )
     check_arguments(

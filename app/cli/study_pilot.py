@@ -13,7 +13,7 @@ KIT = Path(__file__).resolve().parents[2] / "sample_clips" / "pilot"
 INCOMPLETE = 3
 
 
-def pilot_arguments(parser: ArgumentParser) -> None:
+def add_pilot_arguments(parser: ArgumentParser) -> None:
     """Add the options of `pilot`."""
     parser.add_argument(
         "folder", type=Path, help="the folder of the pilot, which is made if it does not exist yet"

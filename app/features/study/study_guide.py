@@ -250,7 +250,7 @@ class Guide(QObject):
                 return reopen(path, job.tell)[0].project
             numbered = None
             if phase.names == "hidden":
-                found = study.assign_numbers(self.participant, phase.condition or "", phase.task or "")
+                found = study.make_clip_numbers(self.participant, phase.condition or "", phase.task or "")
                 copies = copy_numbered(found, path.parent / f"{phase.index:02d}-clips")
                 numbered = dict(zip(copies, found.values(), strict=True))
             return write_task_project(make_task_project(study, phase.clips, name, reference, numbered), path)

@@ -25,7 +25,7 @@ from metagraph.formats.project.text import TextError, parse_yaml
 from metagraph.research.study.logs.log import NAME
 from metagraph.research.study.plan.drawn_orders import read_drawn_orders
 from metagraph.research.study.plan.faults import find_plan_faults
-from metagraph.research.study.plan.hidden_names import assign_numbers
+from metagraph.research.study.plan.hidden_names import make_clip_numbers
 from metagraph.research.study.plan.study_fields import Plan, Task, Training, list_few
 
 VERSION = 1
@@ -68,9 +68,9 @@ class Study:
         found = read_drawn_orders(self.folder).get(participant) if self.plan.order == "concealed" else None
         return self.plan.hides(participant, task, found)
 
-    def assign_numbers(self, participant: str, condition: str, task: str) -> dict[str, Path]:
+    def make_clip_numbers(self, participant: str, condition: str, task: str) -> dict[str, Path]:
         """Return number -> clip, for a task whose clips have numbers. Raises FileError."""
-        return assign_numbers(self.clips(self.plan.task(task).clips), participant, condition, task)
+        return make_clip_numbers(self.clips(self.plan.task(task).clips), participant, condition, task)
 
     def known(self, participant: str) -> None:
         """Raises ValueError for a stranger."""
@@ -125,7 +125,7 @@ class Study:
             try:
                 names = {p.name for p in self.clips(part.clips)}
                 if isinstance(part, Task) and self.plan.names != "shown":
-                    self.assign_numbers("", "", part.id)
+                    self.make_clip_numbers("", "", part.id)
                 if not isinstance(part, Task):
                     continue
                 if part.reference is None:

@@ -360,7 +360,7 @@ class _References:
         if run.names == "hidden":
             with suppress(FileError):
                 project = reveal_names(
-                    project, self.study.assign_numbers(run.participant, run.condition, run.task)
+                    project, self.study.make_clip_numbers(run.participant, run.condition, run.task)
                 )
         attempt = normalize_machines(project, run.condition == "manual")
         found = score(attempt, right[1], self.study.plan.tolerance)

@@ -29,7 +29,7 @@ def has_hidden_names(task: int, number: int, conditions: int, tasks: int) -> boo
     return (task + number % conditions + turn + number // (conditions * tasks)) % 2 == 1
 
 
-def assign_numbers(paths: Sequence[Path], participant: str, condition: str, task: str) -> dict[str, Path]:
+def make_clip_numbers(paths: Sequence[Path], participant: str, condition: str, task: str) -> dict[str, Path]:
     """Return number (as "07.glb") -> clip. Raises FileError for a clip that needs other files beside it."""
 
     def place(path: Path) -> str:

@@ -46,7 +46,7 @@ def wanted(guide: Any, project: Project) -> Project:
     study, phase = guide.study, guide.sitting.phase
     names = {Path(c.path).name: c.name for c in project.clips.values()}
     if phase.names == "hidden":
-        found = study.assign_numbers(guide.participant, phase.condition, phase.task)
+        found = study.make_clip_numbers(guide.participant, phase.condition, phase.task)
         names = {path.name: names[number] for number, path in found.items()}
     reference = read_project(study.reference(phase.task))
     clips = {i: replace(c, name=names[Path(c.path).name]) for i, c in reference.clips.items()}

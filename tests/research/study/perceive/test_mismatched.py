@@ -81,13 +81,13 @@ def test_its_analysis_finds_what_was_planted_and_nothing_where_nothing_was(tmp_p
 def test_still_faces_have_no_lips_brows_and_blinks_of_speech_for_all_who_are_seen() -> None:
     from dataclasses import replace
 
-    from app.cli.perceive_stimuli import still_face
+    from app.cli.perceive_stimuli import make_face_still
     from app.stage.playback_source import ShownPlayback
     from metagraph.graph.model import Project
     from metagraph.playback.plan import Plan
 
     alone = ShownPlayback(Project(), Plan(1, 0.0), 1.0)
-    shown = still_face(replace(alone, others=(replace(alone, side=1),)))
+    shown = make_face_still(replace(alone, others=(replace(alone, side=1),)))
     assert [one.side for one in shown.everyone] == [0, 1]
     for one in shown.everyone:
         life = one.project.life

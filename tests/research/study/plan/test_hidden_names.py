@@ -12,7 +12,7 @@ from metagraph.errors import FileError
 from metagraph.formats.store import read_project
 from metagraph.research.study.analysis.reading import collect_study
 from metagraph.research.study.analysis.results import analyse_study
-from metagraph.research.study.plan.hidden_names import assign_numbers, copy_numbered, reveal_names
+from metagraph.research.study.plan.hidden_names import copy_numbered, make_clip_numbers, reveal_names
 from metagraph.research.study.plan.task_projects import make_task_project, write_task_project
 from metagraph.research.study.report import format_study_page
 from metagraph.research.study.simulation.like_study import write_like
@@ -47,17 +47,17 @@ def test_both_conditions_of_a_task_have_numbers_and_the_sitting_says_so() -> Non
 
 
 def test_numbers_differ_between_conditions_and_people_and_are_the_same_each_time() -> None:
-    one = STUDY.assign_numbers("P01", "meta", "ten")
+    one = STUDY.make_clip_numbers("P01", "meta", "ten")
     assert list(one) == [f"{n:02d}.glb" for n in range(1, 11)]
-    assert one == STUDY.assign_numbers("P01", "meta", "ten")
-    assert list(one.values()) != list(STUDY.assign_numbers("P01", "manual", "ten").values())
-    assert list(one.values()) != list(STUDY.assign_numbers("P02", "meta", "ten").values())
+    assert one == STUDY.make_clip_numbers("P01", "meta", "ten")
+    assert list(one.values()) != list(STUDY.make_clip_numbers("P01", "manual", "ten").values())
+    assert list(one.values()) != list(STUDY.make_clip_numbers("P02", "meta", "ten").values())
     with pytest.raises(FileError, match="may need other files"):
-        assign_numbers([Path("a.gltf")], "P01", "meta", "ten")
+        make_clip_numbers([Path("a.gltf")], "P01", "meta", "ten")
 
 
 def numbered_work(study: Study, folder: Path) -> tuple[Path, dict[str, Path]]:
-    found = study.assign_numbers("P01", "meta", "ten")
+    found = study.make_clip_numbers("P01", "meta", "ten")
     copies = copy_numbered(found, folder / "clips")
     numbered = dict(zip(copies, found.values(), strict=True))
     clips = study.plan.task("ten").clips
@@ -93,7 +93,7 @@ def test_what_was_made_of_numbers_is_scored_as_if_it_had_names(tmp_path: Path) -
         sitting.begin()
         sitting.end()
     assert phase is not None and phase.names == "hidden"
-    found = study.assign_numbers("P01", phase.condition or "", phase.task or "")
+    found = study.make_clip_numbers("P01", phase.condition or "", phase.task or "")
     copies = {p.name: c for p, c in zip(found.values(), copy_numbered(found, tmp_path / "x"), strict=True)}
     right = read_project(study.reference(phase.task))
     clips = {
