@@ -65,8 +65,8 @@ def write_pilot(folder: Path) -> None:
             folder, "is not empty", "on writing the pilot", "Give a folder that does not exist yet."
         )
     kit = read_study(KIT)
-    parts = (*kit.plan.tasks, *kit.plan.training)
-    clips = {path.resolve() for part in parts for path in kit.clips(part.clips)}
+    used = (*(t.clips for t in kit.plan.tasks), *(t.clips for t in kit.plan.training))
+    clips = {path.resolve() for named in used for path in kit.clips(named)}
     content = {f"clips/{path.name}": path.read_bytes() for path in sorted(clips)}
     content["mannequin.glb"] = (KIT.parent / "mannequin.glb").read_bytes()
     for path in sorted(KIT.glob("*.yaml")):

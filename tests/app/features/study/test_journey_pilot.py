@@ -39,7 +39,9 @@ def test_the_pilot_is_gone_through_from_its_command_to_its_data(tmp_path: Path, 
     assert {(r.run.condition, r.run.names) for r in rows} == {
         (c, n) for c in ("meta", "manual") for n in ("shown", "hidden")
     }
-    assert all(r.done and r.correct for r in rows)
+    assert all(r.done and r.score is not None and r.score.f1 == 1.0 for r in rows)
+    odd = {(m.what, r.run.names) for r in rows for m in r.score.mistakes}
+    assert odd <= {("mask", "hidden"), ("jump", "hidden"), ("jump", "shown")}  # no name says which arm moves
     assert (folder / "report" / "report.html").is_file()
     assert len(list((folder / "bids").rglob("*_events.tsv"))) == 4
     assert (folder / "bids" / "phenotype" / "sus.tsv").is_file()
