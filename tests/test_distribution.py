@@ -97,7 +97,7 @@ def test_every_file_of_the_packages_is_in_the_wheel(wheel: Path) -> None:
     for needed in (
         "metagraph/engines/metagraph.schema.json",
         "metagraph/live/live.schema.json",
-        "metagraph/engines/runtimes/unity/Core/Planner.cs",
+        "metagraph/engines/runtimes/unity/Runtime/Core/Planner.cs",
         "metagraph/engines/runtimes/godot/addons/metagraph/plugin.cfg",
         "metagraph/engines/runtimes/javascript/index.js",
         "metagraph/engines/runtimes/cpp/conformance.cpp",

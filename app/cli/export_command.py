@@ -50,6 +50,11 @@ def add_arguments(parser: ArgumentParser) -> None:
         "that support it",
     )
     parser.add_argument(
+        "--pretty",
+        action="store_true",
+        help="break and indent the JSON, for people and for comparing versions; more than twice the size",
+    )
+    parser.add_argument(
         "--overwrite",
         action="store_true",
         help="also replace files of another export, or files that Metagraph did not write",
@@ -162,6 +167,7 @@ def _once(options: Namespace) -> None:
         options.project.resolve().parent,
         lambda p: any(is_inside(p, x) for x in options.sounds),
         options.compress,
+        options.pretty,
     )
     made = registry.write_for_target(
         project, options.target, options.out, contents, overwrite=options.overwrite

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from types import FunctionType, MethodType
 from typing import Any
 
-from PySide6.QtCore import QObject, QRunnable, Qt, QThreadPool, Signal
+from PySide6.QtCore import QObject, QRunnable, Qt, QThreadPool, QTimer, Signal
 from shiboken6 import isValid
 
 from app import faults
@@ -36,6 +36,7 @@ class WindowJob(QObject):
         self._work = work
         self.cancelled = False
         self.heard = False  # somebody handles its failure
+        self.handing_over = False  # its thread is still within `_over`, and Qt reads the job there
         self._over.connect(self._deliver, Qt.ConnectionType.QueuedConnection)
 
     def cancel(self) -> None:
@@ -58,9 +59,14 @@ class WindowJob(QObject):
         self.failed.emit(error)
 
     def forget(self) -> None:
-        """Free it, and what its work and its connections hold."""
+        """Free it, and what its work and its connections hold; not before its thread has left Qt's code for
+        delivering it, which reads the job.
+        """
         self._work = _nothing
-        self.deleteLater()  # connected functions and the job keep each other alive; only Qt can separate them
+        if self.handing_over:
+            QTimer.singleShot(1, self.forget)
+        else:
+            self.deleteLater()  # connected functions and the job hold each other; only Qt can separate them
 
     def tell(self, done: int, total: int, words: str = "") -> None:
         """Report progress; called by the work, on its own thread."""
@@ -84,8 +90,10 @@ class _Runner(QRunnable):
         except Exception as error:
             error.__notes__ = [*getattr(error, "__notes__", []), traceback.format_exc()]
             problem = error
+        self.job.handing_over = True
         with contextlib.suppress(RuntimeError):  # the window is gone; nobody needs the result
             self.job._over.emit(result, problem)
+        self.job.handing_over = False
         del self.job  # the pool drops a runner later than the job is delivered
 
 

@@ -6,6 +6,7 @@ real events (needs xdotool; half an hour for all), each in the quickest way know
 who knows the tool are counted with the real edits, without the window. Writes the tables of
 docs/researchers/experts-paths.md, experts-paths-tables.md and experts-paths-search.md, and
 docs/images/participant.svg. A run that was interrupted continues where it was; `--again` starts from the beginning.
+`--takes 500` prints what so many clips take without proposals, counted without the window.
 """
 
 from __future__ import annotations
@@ -349,7 +350,41 @@ def plot(rows: Sequence[Mapping[str, Any]]) -> str:
     )
 
 
+def count_takes(clips: int) -> None:
+    """Print what so many clips take without proposals: the sample's, with more takes of gestures and fidgets.
+    Counted without the window. The state machine is drawn in the way that is quickest for the sample.
+    """
+    from app.project.files import SAMPLE
+    from metagraph.formats.store import open_project
+    from metagraph.graph import edits
+    from metagraph.research.study.machines.by_hand import Way
+    from metagraph.research.study.machines.counted_fields import label_by_fields
+    from metagraph.research.study.machines.counted_hand import try_way
+    from tests.app.participant import task
+
+    reference = task(open_project(SAMPLE).project, SIZES[-1]).reference
+    repeated = [a for a in reference.actions() if a.kind in ("gesture", "fidget")]
+    for n in range(clips - len(reference.clips)):
+        action, take = repeated[n % len(repeated)], n // len(repeated) + 1
+        clip = reference.clips[action.clip]
+        assert clip.motion is not None
+        name = f"{clip.name[:-2]}{int(clip.name[-2:]) + 10 * take}"  # wave_01, wave_11, wave_21
+        more = edits.add_clips(reference, [(f"{name}.glb", 0, "", clip.motion.renamed(name))])
+        added = next(c for c in more.clips if c not in reference.clips)
+        reference = edits.place_clips(more, [added], action.layer, action.kind, action.stance, None)
+    best = try_way(Way("many at once", "from aliases", "words", "many at once", True), reference)
+    for title, found in (
+        (FROM_NAMES, label_by_fields(reference)),
+        (BY_FIELDS, label_by_fields(reference, False)),
+        (BEST, best),
+    ):
+        print(f"{title}: {time_words(found.seconds)}, {len(found.score.mistakes)} kinds of mistakes")
+
+
 def main(arguments: Sequence[str]) -> None:
+    if "--takes" in arguments:
+        count_takes(int(arguments[arguments.index("--takes") + 1]))
+        return
     sizes = [int(a) for a in arguments if a.isdigit()] or SIZES
     kept = Path(tempfile.gettempdir()) / "metagraph-participant-3.jsonl"
     if "--again" in arguments:

@@ -10,6 +10,7 @@ an arrow:
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -106,13 +107,31 @@ def list_machines(project: Project, spell: Callable[[Action, str], str] | None =
     """Return the machines of the layers that have a stance with a loop, in the layers' order. spell: returns
     how an engine spells the name of an action's state.
     """
-    texts: dict[str, str] = {}
-    for action in (a for layer in LAYERS for a in _playing(project.graphs[layer])):
-        text = f"{action.layer}_{write_word(action.name) or write_word(action.id)}"
-        texts[action.id] = text if spell is None else spell(action, text)
-    named = name_apart(texts)
+    playing = {a.id: a for layer in LAYERS for a in _playing(project.graphs[layer])}
+    texts = _tell_apart(project, playing)
+    named = name_apart(
+        texts if spell is None else {ident: spell(playing[ident], text) for ident, text in texts.items()}
+    )
     found = (_machine(project, project.graphs[layer], named) for layer in LAYERS)
     return tuple(m for m in found if m is not None)
+
+
+def _tell_apart(project: Project, actions: Mapping[str, Action]) -> dict[str, str]:
+    """Return what to call each action: by its layer and name; those of one name by their stances, too, and of
+    one stance by their ids. None has such a name to itself, so whichever is removed, no other takes it over.
+    """
+    plain = {a.id: f"{a.layer}_{write_word(a.name) or write_word(a.id)}" for a in actions.values()}
+    longer = {
+        a.id: f"{plain[a.id]}{'_from' if a.kind == 'transition' else ''}_"
+        f"{write_word(project.graphs[a.layer].stances[a.stance].name) or write_word(a.stance)}"
+        for a in actions.values()
+    }
+    alike, close = Counter(plain.values()), Counter((plain[ident], longer[ident]) for ident in actions)
+    out: dict[str, str] = {}
+    for ident in actions:
+        text = plain[ident] if alike[plain[ident]] == 1 else longer[ident]
+        out[ident] = text if close[plain[ident], longer[ident]] == 1 else f"{text}_{write_word(ident)}"
+    return out
 
 
 def _playing(graph: MetaGraph) -> Iterator[Action]:

@@ -160,9 +160,14 @@ def write_project_files(
     document.exporter = f"Metagraph {__version__}"
     sounds, missing = _sounds(document, target, voices) if voices is not None else ((), ())
     tell(2, 3, "writing")
-    write_atomically(json, msgspec.json.format(msgspec.json.encode(document), indent=1))
+    write_atomically(json, msgspec.json.encode(document) + b"\n")
     tell(3, 3, "done")
     return Exported(json, glb, len(used), (*notes, *missing), sounds)
+
+
+def write_indented_export(path: Path) -> None:
+    """Break and indent the JSON of an export that was written, for people; it is more than twice as large."""
+    write_atomically(path, msgspec.json.format(path.read_bytes(), indent=1))
 
 
 def _sounds(document: c.Export, folder: Path, voices: LineSounds) -> tuple[tuple[Path, ...], tuple[str, ...]]:

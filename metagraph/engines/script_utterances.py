@@ -47,6 +47,20 @@ def list_utterance_cases(project: Project) -> Iterator[ScriptCase]:
         times=(2.3, 3.1, 6.2, 6.5, 8.4, 9.3, 14.0, 16.4),
         alive=(True,),
     )
+    faint = [[0.0, "aa", 0.4], [0.12, "PP"], [0.3, "O", 0.9], [0.42, "PP"], [0.6, "E", 0.3], [1.4, "sil"]]
+    steps = [
+        _step(0.0, ask("a", "say", 1.0, text="This is one thing."), ask("v", "say", 8.0, visemes=faint)),
+        _step(0.0, *(ask(f"a/{word}", "nod", 12.0 + n) for n, word in enumerate(("1", "two", "x/3")))),
+        _step(0.5, ask("w", "withdraw", what="a")),
+    ]
+    yield ScriptCase(
+        "taken back with what was made for it",
+        "ids that only look like its own stay; faint and short mouth shapes",
+        tuple(steps),
+        idle=True,
+        times=(1.4, 8.1, 8.35, 9.0, 12.3, 13.3, 14.3),
+        alive=(True,),
+    )
     steps = [
         _step(1.0, ask("a", "say", text="This is one thing."), ask("b", "say", 4.0, text="That is another.")),
         _step(1.5, ask("p", "pause"), ask("q", "pause", what="b")),

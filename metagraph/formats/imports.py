@@ -20,7 +20,7 @@ from metagraph.graph.model import Project
 from metagraph.motion.adopt import SkeletonMismatchError, adopt, describe_difference, measure_bone_difference
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import JointMap, RetargetError, make_fingerprint
-from metagraph.motion.roles import find_roles, is_humanoid
+from metagraph.motion.roles import find_roles, is_humanoid, is_mirrored
 from metagraph.motion.skeleton import Skeleton
 
 if TYPE_CHECKING:
@@ -31,6 +31,11 @@ Maps = Callable[
     [str, str], JointMap | None
 ]  # fingerprints of a source and a target skeleton -> the map kept for them
 _ALONE = phrase("Import it into a separate project.")
+_MIRRORED = phrase(
+    "the figure's left joints are on its right side, so that its feet point backwards. Export it again "
+    "without mirroring it, or swap left and right in the names of its joints."
+)
+_A_POSE = 0.1  # seconds up to which a clip is a pose, not a movement
 _LONGER = 0.025  # share by which bones may differ from the project's without a word
 PERSON = (
     2  # times as much a clip of a person counts as one of another creature, for the skeleton of a project
@@ -196,6 +201,8 @@ def import_files(
         if character is not None and character.path in still:  # it is useful without a motion
             failures.remove(still[character.path].words)
     notes = (*_together(report.clips), *_together(lost), *_other_bones(list(apart.values())))
+    if skeleton is not None and skeleton is not project.skeleton and is_mirrored(skeleton):
+        notes = (*notes, _MIRRORED)
     if character is not None:
         notes = (*notes, *character.notes)
     result = Imported(tuple(loaded), tuple(failures), notes, report.cancelled, character, stand_ins)
@@ -398,25 +405,42 @@ def _other_bones(groups: Sequence[tuple[float, list[str]]]) -> tuple[str, ...]:
 
 
 def _skeleton_of_most(clips: Sequence[Clip]) -> Skeleton | None:
-    """Return the skeleton that most clips can play on; of equal ones, the one with most joints, then the
-    first. A person's goes before an animal's that no more than twice as many clips can play on.
+    """Return the skeleton that most clips can play on, poses aside; of equal ones, the one with most joints,
+    then the first. A person's goes before an animal's that no more than twice as many clips can play on.
     """
-    groups: dict[
-        tuple[str, ...], list[Clip]
-    ] = {}  # files of one character seldom differ in more than bone lengths
-    for clip in clips:
-        groups.setdefault(clip.skeleton.names, []).append(clip)
-    best: tuple[int, int] = (0, 0)
+    best: tuple[int, int, int] = (0, 0, 0)
     found = None
-    for group in groups.values():
+    groups = _of_one_character(clips)
+    for group in groups:
         skeleton = group[0].skeleton
-        fitting = sum(
-            len(g)
-            for g in groups.values()
+        able = [
+            clip
+            for g in groups
             if g is group or describe_difference(g[0].skeleton, skeleton) is None
-        )
-        if len(groups) > 1 and is_humanoid(find_roles(skeleton)):
-            fitting *= PERSON
-        if (fitting, len(skeleton)) > best:
-            best, found = (fitting, len(skeleton)), skeleton
+            for clip in g
+        ]
+        person = PERSON if len(groups) > 1 and is_humanoid(find_roles(skeleton)) else 1
+        moving = sum(clip.duration > _A_POSE for clip in able)
+        rank = person * moving, person * len(able), len(skeleton)
+        if rank > best:
+            best, found = rank, skeleton
     return found
+
+
+def _of_one_character(clips: Sequence[Clip]) -> list[list[Clip]]:
+    """Return the clips in groups: those whose joints have the same names and differ in no more than the
+    lengths of bones.
+    """
+    groups: dict[tuple[str, ...], list[list[Clip]]] = {}
+    known: dict[str, list[Clip]] = {}
+    for clip in clips:
+        key = clip.skeleton.fingerprint
+        if key not in known:
+            alike = groups.setdefault(clip.skeleton.names, [])
+            known[key] = next(
+                (g for g in alike if describe_difference(clip.skeleton, g[0].skeleton) is None), []
+            )
+            if not known[key]:
+                alike.append(known[key])
+        known[key].append(clip)
+    return [group for alike in groups.values() for group in alike]

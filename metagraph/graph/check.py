@@ -296,6 +296,7 @@ class _ActionCheck:
         blends = timing.blend_in + timing.blend_out
         length = seconds_played(self.action.kind, timing, timing.start, end)
         repeats = cycle_of(self.action.kind, timing, timing.start, end) > 0
+        held = self.action.kind == "stance"  # in a single frame
         if not (0 <= timing.start <= latest and end <= latest):  # also true if one of them is NaN
             yield self.at(
                 "error",
@@ -308,7 +309,7 @@ class _ActionCheck:
                 ),
                 phrase("Move start and end inside the clip."),
             )
-        elif end <= timing.start and entry.frames > 1:
+        elif end <= timing.start and entry.frames > 1 and not (held and end == timing.start):
             yield self.at(
                 "error",
                 "empty",

@@ -25,7 +25,17 @@ MOVED = 1e-4  # metres: below this a joint keeps its rest translation
 _BETWEEN = 4  # joints that one skeleton may have between shared ones and the other not
 _NOTABLE = 0.03  # of the figure's size: shorter bones are fingers and faces
 _APART = 0.05  # of the figure's size that joints of one role may be apart at rest in the same character
+_LONG_BONE = 0.1  # of the figure's size: limbs and their parts
+_ELSEWHERE = np.radians(35)  # by which such a bone may point another way, seen from its joint
+_SLIGHTLY = np.radians(15)  # that bones and joints may differ by when their axes are turned alike
+_FEW = 6  # bones, below which nobody can say how axes are turned
 _TURNED = np.radians(5)  # that such joints may be turned against each other at rest
+
+
+_STAYS = phrase("it lacks {names} of the project's skeleton: at rest while it plays")  # notes' templates
+_HANDED_DOWN = phrase(
+    "its skeleton has {names} in between: their motion was handed down to the joints below them"
+)
 
 
 class SkeletonMismatchError(ValueError):
@@ -37,9 +47,9 @@ def describe_difference(clip: Skeleton, project: Skeleton) -> str | None:
 
     A clip may lack joints (a face-only file), bring ends of its own (a jaw, finger tips), and have up to
     `_BETWEEN` joints more or fewer between shared ones (a second chest, an armature above the hips). The
-    bones between shared joints must be as long. Names may differ by what all joints of a file bear before or
-    behind them (`mixamorig1:`), and altogether where each role's joint rests in the same place and turned the
-    same way.
+    bones between shared joints must be as long, and the longer ones lead the same way from their joints.
+    Names may differ by what all joints of a file bear before or behind them (`mixamorig1:`), and altogether
+    where each role's joint rests in the same place and turned the same way.
     """
     return _Match(clip, project).difference()
 
@@ -60,6 +70,10 @@ class _Match:
 
     def __init__(self, clip: Skeleton, project: Skeleton) -> None:
         self.clip, self.project = _called_alike(clip, project), project
+        self.called = clip.names
+        self.axes = _find_axes(self.clip, project)
+        if self.axes is not None:
+            self.clip = _with_axes(self.clip, self.axes)
         self.own, self.ours = _chains(self.clip, project), _chains(project, self.clip)
 
     def difference(self) -> str | None:
@@ -94,6 +108,9 @@ class _Match:
         ratio = float(np.median(theirs[inner] / mine[inner])) if inner.any() else 1.0
         if not 0.7 < ratio < 1.4:
             return phrase("its bones are {ratio:.3g} times as long", ratio=ratio)
+        turned = self._turned_bones()
+        if turned:
+            return phrase("the bones of its joint '{name}' point another way at rest", name=turned[0])
         return None
 
     def bone_difference(self) -> float:
@@ -102,6 +119,23 @@ class _Match:
         below = np.array([len(self.clip.descendants(chain[-1])) for chain in self.own.values()])
         bones = self._inner() & (mine > _NOTABLE * self.project.height) & (below <= len(self.clip) / 2)
         return float(np.abs(theirs[bones] / mine[bones] - 1).max(initial=0.0))
+
+    def _turned_bones(self) -> list[str]:
+        """Return the joints from which a longer bone leads another way, seen from the joint itself. Such a
+        skeleton turns its joints about other axes, and would twist what is drawn on the project's.
+        """
+        theirs, mine = self._lengths()
+        long = (np.minimum(theirs, mine) > _LONG_BONE * self.project.height) & self._inner()
+        out = []
+        for (name, chain), measured in zip(self.own.items(), long, strict=True):
+            if not measured or len(chain) > 1 or len(self.ours[name]) > 1:
+                continue
+            one = self.clip.rest_translations[chain[0]]
+            other = self.project.rest_translations[self.ours[name][0]]
+            alike = float(one @ other / (np.linalg.norm(one) * np.linalg.norm(other)))
+            if alike < np.cos(_ELSEWHERE):
+                out.append(self.project.names[self.project.parents[self.ours[name][0]]])
+        return out
 
     def note_lost(self) -> tuple[str, ...]:
         """Return a note on the joints of the clip whose motion the project's skeleton has no joints for."""
@@ -123,6 +157,33 @@ class _Match:
         )
         return (several,)
 
+    def note_adopted(self) -> tuple[str, ...]:
+        """Return notes on differences of the skeletons that were bridged: other names, and joints between
+        shared ones that only one of them has.
+        """
+        out = []
+        renamed = next(
+            (pair for pair in zip(self.called, self.clip.names, strict=True) if pair[0] != pair[1]), None
+        )
+        if renamed is not None:
+            out.append(
+                phrase(
+                    "its joints have other names ('{one}' for '{other}'): taken for the project's skeleton",
+                    one=renamed[0],
+                    other=renamed[1],
+                )
+            )
+        if self.axes is not None:
+            out.append(phrase("the axes of its joints were turned to those of the project's skeleton"))
+        for chains, skeleton, words in (
+            (self.ours, self.project, _STAYS),
+            (self.own, self.clip, _HANDED_DOWN),
+        ):
+            names = [skeleton.names[joint] for chain in chains.values() for joint in chain[:-1]]
+            if names:
+                out.append(phrase(words, names=", ".join(f"'{name}'" for name in names)))
+        return tuple(out)
+
     def _lengths(self) -> tuple[Array, Array]:
         return _lengths(self.clip, self.own), _lengths(self.project, self.ours)
 
@@ -133,7 +194,7 @@ class _Match:
 def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
     """Return the clip expressed on `skeleton`: joints reordered by name, missing ones at rest, bones as the
     clip has them. A note names the joints whose motion is lost; that of joints between shared ones is handed
-    down.
+    down. Notes say which differences of the skeletons were bridged.
 
     Raises SkeletonMismatchError when the skeletons are not of the same character.
     """
@@ -147,6 +208,8 @@ def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
         raise SkeletonMismatchError(why)
     own, chains, alike = match.own, match.ours, match.clip
     source = clip.poses()
+    if match.axes is not None:
+        source = _turn_axes(source, clip.skeleton.parents, match.axes)
     rotations = np.broadcast_to(skeleton.rest_rotations, (clip.frames, len(skeleton), 4)).astype(np.float32)
     translations = np.broadcast_to(skeleton.rest_translations, (clip.frames, len(skeleton), 3)).astype(
         np.float32
@@ -170,8 +233,63 @@ def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
         rotations=rotation.make_continuous(rotations),
         translations=translations[:, list(translated)],
         translated=translated,
-        notes=(*clip.notes, *match.note_lost()),
+        notes=(*clip.notes, *match.note_adopted(), *match.note_lost()),
     )
+
+
+def _find_axes(clip: Skeleton, project: Skeleton) -> Array | None:
+    """Return the turn `[4]` that leads a clip's bones, seen from their joints, to those of the project, as
+    between a file written with Z up and one with Y up; None if no single turn does that, or hardly any is
+    needed.
+    """
+    shared = [
+        (j, project.index(name))
+        for j, name in enumerate(clip.names)
+        if name in project
+        and clip.parents[j] >= 0
+        and project.parents[project.index(name)] >= 0
+        and clip.names[clip.parents[j]] == project.names[project.parents[project.index(name)]]
+    ]
+    one, other = [j for j, _ in shared], [j for _, j in shared]
+    theirs, mine = clip.rest_translations[one], project.rest_translations[other]
+    sizes = np.minimum(np.linalg.norm(theirs, axis=-1), np.linalg.norm(mine, axis=-1))
+    long = sizes > _NOTABLE * project.height
+    if long.sum() < _FEW:
+        return None
+    theirs, mine = theirs[long], mine[long]
+    u, _, vt = np.linalg.svd(theirs.T @ mine)
+    flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(vt.T @ u.T))])
+    axes = rotation.from_matrix(vt.T @ flip @ u.T)
+    if 2 * np.arccos(min(1.0, abs(float(axes[3])))) < _ELSEWHERE:
+        return None
+    led = rotation.rotate_vectors(np.tile(axes, (len(theirs), 1)), theirs)
+    alike = (led * mine).sum(-1) / np.linalg.norm(led, axis=-1) / np.linalg.norm(mine, axis=-1)
+    turned = rotation.measure_angle_between(
+        _with_axes(clip, axes).rest_rotations[one], project.rest_rotations[other]
+    )
+    return axes if alike.min() > np.cos(_SLIGHTLY) and turned.max() < _SLIGHTLY else None
+
+
+def _with_axes(skeleton: Skeleton, axes: Array) -> Skeleton:
+    rest = _turn_axes(
+        Pose(skeleton.rest_rotations[None], skeleton.rest_translations[None]), skeleton.parents, axes
+    )
+    return Skeleton(skeleton.names, skeleton.parents, rest.rotations[0], rest.translations[0])
+
+
+def _turn_axes(pose: Pose, parents: Array, axes: Array) -> Pose:
+    """Return poses `[F, J]` with the axes of all joints turned; each joint stays in its place."""
+    below = np.flatnonzero(parents >= 0)
+    rotations = rotation.multiply(pose.rotations.astype(float), rotation.conjugate(axes))
+    rotations[:, below] = rotation.multiply(
+        np.broadcast_to(axes, rotations[:, below].shape), rotations[:, below]
+    )
+    translations = pose.translations.astype(float)
+    shape = translations[:, below].shape
+    translations[:, below] = rotation.rotate_vectors(
+        np.broadcast_to(axes, (*shape[:-1], 4)), translations[:, below]
+    )
+    return Pose(rotations, translations)
 
 
 def _chains(skeleton: Skeleton, other: Skeleton) -> dict[str, list[int]]:

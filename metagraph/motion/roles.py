@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 
+import numpy as np
+
 from metagraph.motion.joint_names import ARM, FACE, HELPERS, guess_joint_kind, split_joint_name
 from metagraph.motion.roles_by_shape import find_roles_by_shape
 from metagraph.motion.skeleton import Skeleton
@@ -331,6 +333,31 @@ def is_humanoid(roles: Mapping[str, int]) -> bool:
     lacks.
     """
     return not find_missing_roles(roles)
+
+
+def is_mirrored(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> bool:
+    """Return whether both feet of the rest pose point backwards, seen from where its left and right are: the
+    left joints are on the right side, as in files whose writer mixed up the handedness of its axes.
+    """
+    roles = find_roles(skeleton) if roles is None else roles
+    if not {"left_upper_leg", "right_upper_leg", "left_foot", "right_foot"} <= roles.keys():
+        return False
+    _, places = skeleton.globals(skeleton.rest)
+    aside = places[roles["left_upper_leg"]] - places[roles["right_upper_leg"]]
+    ahead = np.cross(aside, [0.0, 1.0, 0.0])
+    if np.linalg.norm(ahead) < 1e-6:
+        return False
+    ahead /= np.linalg.norm(ahead)
+    for side in ("left", "right"):
+        foot = roles[f"{side}_foot"]
+        below = [j for j in skeleton.descendants(foot) if j != foot]
+        if not below:
+            return False
+        way = max((places[j] - places[foot] for j in below), key=lambda w: abs(float(w @ ahead)))
+        level = np.array([way[0], 0.0, way[2]])
+        if float(level @ ahead) > -max(0.02 * skeleton.height, 0.7 * float(np.linalg.norm(level))):
+            return False
+    return True
 
 
 def assign_body_parts(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tuple[str, ...]:

@@ -393,6 +393,8 @@ class _Findings:
         return not self.project.clips[action.clip].in_place and far > GLIDES * self.size
 
     def _floor(self) -> Iterator[Problem]:
+        if not {"left_foot", "right_foot"} & set(self.seen.parts):
+            return  # a figure without legs stands on nothing
         under, above = self.seen.lowest < -UNDER * self.size, self.seen.lowest > ABOVE * self.size
         sits = self.seen.sits
         for code, over in (

@@ -28,6 +28,7 @@ from metagraph.suggest.traits import Traits
 
 Array = NDArray[Any]
 
+LEAST_LOOP = 1.0  # seconds of a still moment that can repeat; of a shorter one, a single frame is held
 STILL = np.radians(2.0)  # the most that a joint turns in a moment that is still enough to stand in
 STAYS = 0.01  # heights that the hips move in it, at most
 LONGEST = 2.0  # seconds: the longest such moment
@@ -265,6 +266,11 @@ def _alike(project: Project, clip: str, kind: str, layer: str, stance: str) -> t
 
 # --- where to stand when nothing rests
 
+_FIRST = phrase("no clip rests there; '{name}' holds still for its first {seconds:.2f} s")
+_LAST = phrase("no clip rests there; '{name}' holds still for its last {seconds:.2f} s")
+_FIRST_FRAME = phrase("no clip rests there; the first frame of '{name}' is held")
+_LAST_FRAME = phrase("no clip rests there; the last frame of '{name}' is held")
+
 
 def find_rest_moment(
     project: Project, place: StancePlace, proposals: Mapping[str, Proposal]
@@ -281,27 +287,24 @@ def find_rest_moment(
                 if b is not None and b.value == place.key
             ]
     best: RestMoment | None = None
+    longest = 0.0
     for _, clip, first in sorted(ends, key=lambda x: (-x[0], x[1], not x[2]))[:MANY]:
         motion = project.clips[clip].motion
         if motion is None:
             continue
         long = _still(motion, first)
-        if best is None or long > best.end - best.start + 1e-6:
-            start, end = (0.0, long) if first else (motion.duration - long, motion.duration)
+        if best is None or long > longest + 1e-6:
+            longest = long
+            if long < LEAST_LOOP:  # repeated so fast, it would tremble
+                start = end = 0.0 if first else motion.duration
+            else:
+                start, end = (0.0, long) if first else (motion.duration - long, motion.duration)
             name = project.clips[clip].name
-            reason = (
-                phrase(
-                    "no clip rests there; '{name}' holds still for its first {seconds:.2f} s",
-                    name=name,
-                    seconds=long,
-                )
-                if first
-                else phrase(
-                    "no clip rests there; '{name}' holds still for its last {seconds:.2f} s",
-                    name=name,
-                    seconds=long,
-                )
-            )
+            if first:
+                words = _FIRST_FRAME if start == end else _FIRST
+            else:
+                words = _LAST_FRAME if start == end else _LAST
+            reason = phrase(words, name=name, seconds=long)
             best = RestMoment(clip, round(start, 3), round(end, 3), reason)
     return best
 

@@ -24,16 +24,30 @@ LOOK = 0.2  # probability of being wrong; from this on a check is worth its time
 PLACED = 0.6  # confidence of a stance; below it a clip may be on the wrong one, whatever else is certain
 LOST = 0.5  # confidence below which a stance is almost unknown
 UNLIKELY = 0.4  # confidence of a stance; below it a clip is not placed unless somebody says so
-WEIGHTS = (-1.969, 1.036, 0.36, 0.527, 1.967, -2.112, 0.158)  # of `measures`, as `fit_flags.py` prints them
+WEIGHTS = (
+    -2.843,
+    0.695,
+    0.429,
+    1.023,
+    1.927,
+    -0.313,
+    -0.24,
+    0.403,
+    0.712,
+    0.918,
+    -4.647,
+)  # `fit_flags.py` prints them
 
 
 def measure_proposal(p: Proposal) -> Array:
-    """Return what a proposal says about itself `[7]`: 1, the logits of kind, of layer and of where a
+    """Return what a proposal says about itself `[11]`: 1, the logits of kind, of layer and of where a
     transition ends (0 for other kinds), whether it is a gesture or fidget, which are the hardest to tell
-    apart, whether its name says its kind, and whether its stance is almost unknown.
+    apart, whether its name says its kind, whether its stance is almost unknown, the logit of its kind by the
+    motion alone (0 if nobody looked at it), whether it is a fidget, whether it is of the body, and of how
+    many clips beside it sources disagree.
 
-    The confidence of the stance, disagreement of the sources and a visible jump said nothing more about right
-    and wrong on the sets that the weights were fitted on.
+    The confidence of the stance, its own sources' disagreement and a visible jump said nothing more about
+    right and wrong on the sets that the weights were fitted on.
     """
     end = p.end_stance.confidence if p.end_stance is not None else 0.02
     return np.array(
@@ -45,6 +59,10 @@ def measure_proposal(p: Proposal) -> Array:
             float(p.kind.value in ("gesture", "fidget")),
             float(p.said),
             float(p.stance is None or p.stance.confidence < LOST),
+            _logit(p.seen) if p.seen is not None else 0.0,
+            float(p.kind.value == "fidget"),
+            float(p.layer.value == "body"),
+            p.disputed,
         ]
     )
 

@@ -21,6 +21,7 @@ from metagraph.suggest.words.names import NEVER, NameGuess
 SURELY = NEVER | {"dance", "dancing", "turn in place"}
 MANY = 0.2  # of a set's names that say so, from which on it is a game's
 POSE = 0.2  # seconds: a shorter clip is a pose and no movement
+TAKE, MOVEMENTS = 20.0, 8  # seconds and movements from which on a clip is a recording to be cut up
 FAR = 0.5  # heights over the ground: a clip that goes farther and to no other stance goes away
 ROUND = 50.0  # degrees that a clip turns round without going to another stance
 EXERCISE = 0.14  # heights the hips go up and down while the legs move fast
@@ -84,6 +85,13 @@ def explain_skipping(
         return said.other.reason
     if traits is None or motion is None or motion.chances is None:
         return ""
+    if traits.duration > TAKE and traits.layers["arms"].bouts >= MOVEMENTS:
+        return phrase(
+            "is a recording of {seconds:.0f} s with {count:,} movements of the arms, to be cut into clips "
+            "(Motion graph of takes)",
+            seconds=traits.duration,
+            count=traits.layers["arms"].bouts,
+        )
     if is_walk(traits):
         return phrase(
             "walks or runs: its feet pass each other by {stride:.0f} cm, and its end flows into its start",

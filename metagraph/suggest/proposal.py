@@ -21,7 +21,7 @@ _USUAL = Patterns()
 class RestMoment:
     """A moment of a clip that is still enough to stand in.
 
-    `start` and `end` are seconds of the clip. `reason` is in words.
+    `start` and `end` are seconds of the clip; they are equal if a single frame is held. `reason` is in words.
     """
 
     clip: str
@@ -57,7 +57,9 @@ class Proposal:
     nor its end would jump, None if unknown. `details` has what else is known of the action, by its name in
     the model: the fields of `timing`, `mask` (names of the only joints it moves, empty for all), `stroke`
     (seconds, for gestures) and `likelihood`. `said` says whether its name says its kind, `cycle` whether its
-    clip is one cycle of a gesture, which repeats.
+    clip is one cycle of a gesture, which repeats. `seen` is how likely its motion alone makes it this kind,
+    None if nobody looked at it. `disputed` is the share of the clips proposed with it of which sources firmly
+    disagree.
     """
 
     clip: str
@@ -74,6 +76,8 @@ class Proposal:
     details: Mapping[str, Belief[Any]] = field(default_factory=dict)
     said: bool = False
     cycle: bool = False
+    seen: float | None = None
+    disputed: float = 0.0
 
     @property
     def confidence(self) -> float:

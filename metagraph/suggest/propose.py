@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from metagraph.common.wording import phrase
-from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Layer, Limb, Project
+from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Kind, Layer, Limb, Project
 from metagraph.suggest.accept import AcceptedProposals, accept
 from metagraph.suggest.alike import Alike, LabelledExample
 from metagraph.suggest.clip_measures import guess_layer, is_cycle, with_tremble
@@ -238,6 +238,8 @@ def _placed(
     """Return the stances there are, and what is proposed for each clip."""
     places = StancePlaces(project, heard, shapes)
     out = {each.clip: p for each in heard if (p := _proposal(each, places)) is not None}
+    disputed = sum(1 for p in out.values() if p.conflicts) / max(1, len(out))
+    out = {clip: replace(p, disputed=disputed) for clip, p in out.items()}
     return places, assign_most_used(out, places.by_key, _astray(heard))
 
 
@@ -478,4 +480,13 @@ def _proposal(each: ClipEvidence, places: StancePlaces, anyway: bool = False) ->
         tuple(x.conflict for x in found if x.conflict),
         said=each.said.kind is not None and each.said.kind.value == kind.belief.value,
         cycle=each.cycle,
+        seen=_seen_as(each, kind.belief.value),
     )
+
+
+def _seen_as(each: ClipEvidence, kind: Kind) -> float | None:
+    """Return how likely a clip's motion alone makes it this kind, None if nobody looked at it."""
+    if each.beside is None:
+        return None
+    own = each.beside.kind
+    return own.confidence if own.value == kind else 1 - max(own.confidence, 0.5)

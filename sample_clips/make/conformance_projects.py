@@ -562,13 +562,13 @@ def repeating(touch: bool = False) -> Project:
         graph = project.graphs[layer]  # type: ignore[index]
         action = graph.of(graph.start or "", kind)[0]  # type: ignore[arg-type]
         length = project.clips[action.clip].duration
-        timing = replace(action.timing, start=0.2 * length, end=0.6 * length, **fields)  # type: ignore[arg-type]
+        timing = replace(action.timing, start=0.24 * length, end=0.6 * length, **fields)  # type: ignore[arg-type]
         if layer == "head":
             timing = replace(timing, earliest_exit=0.45 * length)
         whole = dict.fromkeys(("ready", "stroke", "stroke_end", "relax"))
         changes[action.id] = {"timing": replace(timing, **whole), "tags": (*action.tags, "again")}  # type: ignore[arg-type]
         if touch and (layer, kind) == ("arms", "gesture"):
-            chance, times = np.random.default_rng(3), (0.2 * length, 0.5 * length)
+            chance, times = np.random.default_rng(3), (0.24 * length, 0.5 * length)
             keys = tuple(_near(project, action, "right", "Chest", float(t), chance) for t in times)
             span = ContactSpan("right", "palm", "Chest", *times, keys, 0.2, 0.05)
             changes[action.id]["contacts"] = (span,)

@@ -114,7 +114,7 @@ def main() -> None:
         if shutil.which("mcs"):
             source = folder / "bench.cs"
             source.write_text(CSHARP)
-            sources = [source, *sorted((RUNTIMES / "unity" / "Core").rglob("*.cs"))]
+            sources = [source, *sorted((RUNTIMES / "unity" / "Runtime" / "Core").rglob("*.cs"))]
             program = folder / "bench.exe"
             subprocess.run(
                 ["mcs", "-langversion:7.2", "-optimize", f"-out:{program}", *map(str, sources)],

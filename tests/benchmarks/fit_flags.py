@@ -24,6 +24,7 @@ from tests.benchmarks.bench_labels import TRUTH, projects  # noqa: E402
 from tests.label_zoo import catalogue  # noqa: E402
 from tests.label_zoo.measure import meanings, none_of_the_four, right_clip  # noqa: E402
 
+MADE = 60  # drawn sets
 PARTS = 5  # in which made sets are left out: they are of the same clips, but made otherwise
 THRESHOLDS = (0.1, 0.2, 0.3, 0.4, 0.5)
 SOURCES = (("name", "motion"), ("motion",))
@@ -61,7 +62,7 @@ def main() -> None:
         truth = json.loads(path.read_text("utf-8"))["clips"]
         for n, project in enumerate(projects(path.stem)):
             sets[f"{path.stem} {n}"] = path.stem, rows(project, truth)
-    for n, made in enumerate([*catalogue.named_sets(), *catalogue.made_sets(30, 11)]):
+    for n, made in enumerate([*catalogue.named_sets(), *catalogue.made_sets(MADE, 11)]):
         sets[made.name] = f"made {n % PARTS}", rows(made.project, made.truth)
     data = [(name, family, *row) for name, (family, some) in sets.items() for row in some]
     x = np.array([row[3] for row in data])

@@ -65,7 +65,8 @@ def ran(program: Path, *words: object, **environment: str) -> subprocess.Complet
 
 # What is broken: a file, a rule's expression, what it is instead, and which case notices.
 MUTANTS = [
-    ("pose.hpp", "1 - pose::cue_weight(*cue, time)", "pose::cue_weight(*cue, time)", "sparse: arms: strokes that are planned on"),
+    ("pose.hpp", "lead(other_, stance_, 1 - weight, count)", "lead(other_, stance_, weight, count)", "sparse: arms: strokes that are planned on"),
+    ("pose.hpp", "FADE_BEYOND = 0.866", "FADE_BEYOND = 0.0", "sparse: arms: strokes that are planned on"),
     ("pose.hpp", "elapsed >= period", "elapsed < 0", "standing: the models alone"),
     ("pose.hpp", "rotation::ease((time - rest.fade_start) / rest.fade)", "1.0", "standing: the models alone"),
     ("pose.hpp", "weight == 1 ?", "weight > 0 ?", "varied: nothing is asked"),

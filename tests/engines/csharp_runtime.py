@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 RUNTIME = ROOT / "metagraph" / "engines" / "runtimes" / "unity"
 VECTORS = sorted(p.parent for p in (ROOT / "metagraph" / "engines" / "conformance").glob("*/vectors.json"))
 STICK = ROOT / "metagraph" / "engines" / "conformance" / "stick"
-CORE = sorted((RUNTIME / "Core").rglob("*.cs"))
+CORE = sorted((RUNTIME / "Runtime" / "Core").rglob("*.cs"))
 
 needs_mono = pytest.mark.skipif(
     shutil.which("mcs") is None or shutil.which("mono") is None,

@@ -316,7 +316,7 @@ def in_csharp(export: Path, steps: list[dict[str, Any]], folder: Path) -> dict[s
     texts = [step | {"ask": [json.dumps(request) for request in step["ask"]]} for step in steps]
     (folder / "texts.json").write_text(json.dumps(texts))
     (folder / "game.cs").write_text(CSHARP)
-    sources = [folder / "game.cs", *sorted((RUNTIMES / "unity" / "Core").rglob("*.cs"))]
+    sources = [folder / "game.cs", *sorted((RUNTIMES / "unity" / "Runtime" / "Core").rglob("*.cs"))]
     command = ["mcs", "-optimize", f"-out:{folder / 'game.exe'}", *map(str, sources)]
     made = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert made.returncode == 0, made.stdout + made.stderr

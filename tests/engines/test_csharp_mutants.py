@@ -183,14 +183,14 @@ TRIED = some(MUTATIONS, 3)
 
 def program_of(host: Host, out: Path, sources: list[Path]) -> Path:
     """Return a program of a runtime's sources and what runs the vectors."""
-    host.compile(out, *sources, RUNTIME / "Conformance" / "Conformance.cs")
+    host.compile(out, *sources, RUNTIME / "Tests" / "Conformance.cs")
     return out
 
 
 def test_every_rule_that_could_be_broken_stands_in_its_file_once() -> None:
     """Of those, one in three is broken here, and all where asked to be thorough."""
     for file, rule, instead, _ in MUTATIONS:
-        broken(RUNTIME / "Core" / file, rule, instead)
+        broken(RUNTIME / "Runtime" / "Core" / file, rule, instead)
 
 
 @pytest.mark.nightly
@@ -211,7 +211,7 @@ def test_what_tries_mutants_finds_no_fault_with_what_is_whole(
 def test_the_vectors_notice_when_a_rule_is_broken(
     host: Host, single: Path, tmp_path: Path, file: str, rule: str, instead: str, about: str
 ) -> None:
-    path = RUNTIME / "Core" / file
+    path = RUNTIME / "Runtime" / "Core" / file
     changed = tmp_path / path.name
     changed.write_text(broken(path, rule, instead), encoding="utf-8")
     number = [m[3] for m in MUTATIONS].index(about)

@@ -95,6 +95,34 @@ def test_removing_an_action_changes_neither_name_nor_number_of_another(named: Pr
         assert len(left) == len(whole) - 1
 
 
+def test_actions_of_one_name_are_told_apart_by_their_stances_and_no_name_passes_to_another(
+    sample: Project,
+) -> None:
+    """A program that asks for what was removed hears that there is no such state; it never plays another."""
+    whole, actions = named_states(sample), {action.id: action for action in sample.actions()}
+    by_stance = {
+        sample.graphs["arms"].stances[actions[ident].stance].name: name
+        for ident, (name, _) in whole.items()
+        if actions[ident].name == "shrug_bt_01"
+    }
+    assert by_stance["on hips"] == "arms_shrug_bt_01_on_hips"
+    assert by_stance["hands at sides"] == "arms_shrug_bt_01_hands_at_sides"
+    assert "arms_to_on_hips_from_arms_crossed" in {name for name, _ in whole.values()}
+    twin = edits.update_actions(sample, [_of_name(sample, "air_quotes_bt_01")], name="heart_rt_01")
+    states = named_states(twin)
+    alike = [action.id for action in twin.actions() if action.name == "heart_rt_01"]
+    assert [states[i][0] for i in alike] == [f"arms_heart_rt_01_hands_at_sides_{i}" for i in alike]
+    for action in [a for a in sample.actions() if a.kind == "gesture"][::7]:
+        left = named_states(edits.remove_actions(sample, [action.id]))
+        others = {name for ident, (name, _) in whole.items() if ident != action.id}
+        assert whole[action.id][0] not in {name for name, _ in left.values()}
+        assert len({name for name, _ in left.values()} - others) <= 1  # the last of a name needs no stance
+
+
+def _of_name(project: Project, name: str) -> str:
+    return next(action.id for action in project.actions() if action.name == name)
+
+
 @pytest.mark.parametrize("target", MACHINES)
 def test_every_target_has_the_real_name_beside_the_id_that_stands_for_it(
     named: Project, tmp_path: Path, toy: Any, target: str

@@ -28,6 +28,8 @@ from metagraph.engines.export_document import list_used_clips, to_document
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.export_rig import list_export_voices, read_voices
 from metagraph.engines.reading import read_export
+from metagraph.engines.targets import registry
+from metagraph.engines.targets.target import Contents
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips
 from metagraph.formats.imports import gather, import_files
@@ -36,6 +38,7 @@ from metagraph.graph import edits
 from metagraph.graph.check import check_project
 from metagraph.graph.expand import count_machine_size, list_connections
 from metagraph.graph.model import LAYERS, Markov, Project
+from metagraph.graph.repeating import cycle_of
 from metagraph.graph.requests import Line
 from metagraph.motion.skeleton import make_names_unique
 from metagraph.playback.life.voice import make_silent_voice
@@ -67,6 +70,8 @@ def same(back: Project, project: Project) -> None:
         for action in graph.actions.values():
             start, end = project.span(action)
             timing = replace(action.timing, start=start, end=None if action.timing.end is None else end)
+            if not cycle_of(action.kind, action.timing, start, end):  # loops and moments do not repeat
+                timing = replace(timing, repeat=0.0)
             shown[action.id] = replace(action, timing=timing)
         assert back.graphs[layer].actions == shown
         assert list(back.graphs[layer].actions) == list(shown)
@@ -74,7 +79,10 @@ def same(back: Project, project: Project) -> None:
         assert back.graphs[layer].start == graph.start
         assert back.graphs[layer].weights == graph.weights
         assert back.graphs[layer].index == back.graphs[layer].with_actions({}).index
-    for field in ("name", "base", "settings", "markov", "roles", "parts", "skeleton"):
+    base, clip = project.base, project.clips.get(project.base.clip or "")
+    steps = 1 if clip is None else round(back.clips[clip.id].fps / clip.fps)  # an export has dense keys
+    assert back.base == replace(base, frame=base.frame * steps)
+    for field in ("name", "settings", "markov", "roles", "parts", "skeleton"):
         assert getattr(back, field) == getattr(project, field), field
 
 
@@ -582,3 +590,13 @@ def test_stresses_of_a_voice_come_back_however_near_each_other() -> None:
     project = Project(lines={"said": Line(text="so")}, voices={"said": spoken})
     (back,) = read_voices(list_export_voices(project)).values()
     assert back.accents.tolist() == [0.5, 1.2, 3.0]
+
+
+def test_the_json_is_on_one_line_unless_people_are_to_read_it(tmp_path: Path) -> None:
+    plain = registry.write_for_target(small(), "metagraph", tmp_path / "plain").files[0]
+    pretty = registry.write_for_target(
+        small(), "metagraph", tmp_path / "pretty", Contents(pretty=True)
+    ).files[0]
+    assert plain.read_text("utf-8").count("\n") == 1
+    assert pretty.read_text("utf-8").count("\n") > 100
+    assert json.loads(plain.read_bytes()) == json.loads(pretty.read_bytes())

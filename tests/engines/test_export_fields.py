@@ -17,6 +17,7 @@ import pytest
 from metagraph import engines
 from metagraph.engines.reading import read_export
 from metagraph.engines.vectors import NAME, list_cases, write_vectors
+from tests.engines.csharp_runtime import CORE, RUNTIME, compiled, mono
 from tests.engines.javascript_runtime import conformance, needs_node
 
 FOLDER = Path(engines.__file__).with_name("conformance") / "random1"
@@ -87,6 +88,30 @@ def test_a_changed_field_is_played_otherwise_and_as_in_python(
     assert _cases(folder) != _cases(plain), f"Python does not hear '{field}'"
     done = conformance(folder)
     assert done.returncode == 0, done.stdout[:1000] + done.stderr[:1000]
+
+
+@pytest.mark.nightly
+@needs_node
+def test_a_joint_that_bows_without_breathing_turns_everywhere(tmp_path: Path) -> None:
+    """No export has bowed hips, but the format allows them."""
+    folder = shutil.copytree(FOLDER, tmp_path / FOLDER.name)
+    path = folder / f"{FOLDER.name}.json"
+    document = json.loads(path.read_bytes())
+    rig = document["rig"]
+    assert rig["breath"][0][3] == 0 and rig["bowed"][0] == 0
+    rig["bowed"][0], rig["thrust"][0] = 0.1, -0.05
+    path.write_text(json.dumps(document))
+    cases = [case for case in list_cases(read_export(path, resolved=True)) if "mood" in case.name][:CASES]
+    write_vectors(path, cases)
+    played = {case["name"]: case for case in _cases(folder)}
+    before = {case["name"]: case for case in _cases(FOLDER)}
+    assert any(played[name] != before[name] for name in played.keys() & before.keys())
+    done = conformance(folder)
+    assert done.returncode == 0, done.stdout[:1000] + done.stderr[:1000]
+    if shutil.which("mcs") and shutil.which("mono"):
+        sources = [*CORE, RUNTIME / "Tests" / "Conformance.cs"]
+        ran = mono(compiled(tmp_path / "conformance.exe", *sources), folder)
+        assert ran.returncode == 0, ran.stdout[:1000]
 
 
 # What is no number to play with, and why. The manual's page on exports says of the last five that they are constants.

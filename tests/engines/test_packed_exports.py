@@ -156,7 +156,7 @@ def test_views_are_unpacked_as_the_extensions_own_library_does(packed: Path) -> 
 def test_it_plays_the_same_in_c_sharp_and_a_damaged_one_is_refused(
     packed: Path, damaged: list[Path], core: Path
 ) -> None:
-    runner = csharp_runtime.RUNTIME / "Conformance" / "Conformance.cs"
+    runner = csharp_runtime.RUNTIME / "Tests" / "Conformance.cs"
     program = csharp_runtime.compiled(core.with_name("packed.exe"), runner, references=(core,))
     done = csharp_runtime.mono(program, packed)
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]

@@ -78,39 +78,44 @@ func _ready():
 	print("seen ", JSON.stringify({"names": names, "looping": looping, "seen": seen}))
 	get_tree().quit(0)
 """
-NODE = """extends Node
+OPEN = """extends Node
 
 func _ready():
 	var state = GLTFState.new()
 	var document = GLTFDocument.new()
-	document.append_from_buffer(FileAccess.get_file_as_bytes("res://sample.motion"), "", state)
+	document.append_from_buffer(FileAccess.get_file_as_bytes("res://FOLDERsample.motion"), "", state)
 	var character = document.generate_scene(state)
-	add_child(character)
-	var skeleton = character.find_children("*", "Skeleton3D", true, false)[0]
-	var avatar = load("res://addons/metagraph/metagraph_character.gd").new()
-	avatar.json_path = "res://sample.json"
-	avatar.glb_path = "res://sample.motion"
-	avatar.skeleton_path = skeleton.get_path()
-	avatar.chance = 1
+	var imported = PackedScene.new()
+	imported.pack(character)
+	character.free()
+	imported.take_over_path("res://FOLDERsample.glb")  # as the editor would have imported it
+	var scene = load("res://FOLDERsample.tscn").instantiate()
+	add_child(scene)
+	var skeleton = scene.find_children("*", "Skeleton3D", true, false)[0]
+	var avatar = scene.get_node("Performer")
 	var begun = []
 	avatar.began.connect(func(action, layer, _meta): begun.append(layer + " " + action))
-	add_child(avatar)
-	var asked = [avatar.gesture(["greeting"], {"after": 0.5}), avatar.go("on hips", {"after": 4.0})]
-	asked.append(avatar.ask({"do": "nod", "after": 2.0}))
+	var asked = [avatar.gesture(["greeting"], {"after": 6.0}), avatar.go("on hips", {"after": 9.0})]
+	asked.append(avatar.ask({"do": "nod", "after": 7.0}))
 	asked.append(avatar.look("user", {}))
-	asked.append(avatar.say("Hello! How are you?"))
+	asked.append(avatar.say("Hello! How are you?", {"after": 6.0}))
 	asked.append_array([avatar.mood("happy", 0.5), avatar.mode("talking"), avatar.place("door", Vector3(1, 1, 1))])
 	asked.append(avatar.withdraw("nothing"))
 	var hands = []
-	for n in 600:
+	var apart = 0.0
+	for n in 900:
 		avatar._process(1.0 / 60)
-		if n == 40:
+		if n == 540:
 			asked.append(avatar.interrupt())
 		if n % 100 == 0:
 			var hand = skeleton.get_bone_global_pose(skeleton.find_bone("RightHand")).origin
 			hands.append([hand.x, hand.y, hand.z])
+			var pose = avatar.character.pose()
+			for joint in pose.rotations.size():
+				var bone = skeleton.find_bone(avatar.graph.names[joint])
+				apart = max(apart, skeleton.get_bone_pose_rotation(bone).angle_to(pose.rotations[joint]))
 	var states = asked.map(func(id): return avatar.answer(id).state)
-	print("seen ", JSON.stringify({"states": states, "begun": begun, "hands": hands}))
+	print("seen ", JSON.stringify({"states": states, "begun": begun, "hands": hands, "apart": apart}))
 	get_tree().quit(0)
 """
 SCENE = """[gd_scene load_steps=2 format=3]
@@ -120,6 +125,10 @@ SCENE = """[gd_scene load_steps=2 format=3]
 [node name="Main" type="Node"]
 script = ExtResource("1")
 """
+CLASSES = (  # what the editor finds out
+    b'list=[{"base": &"Node", "class": &"MetagraphCharacter", "icon": "", "is_abstract": false, "is_tool": false,'
+    b' "language": &"GDScript", "path": "res://addons/metagraph/metagraph_character.gd"}]'
+)
 PAGE = """<!doctype html><canvas id="canvas" width="8" height="8"></canvas><script src="index.js"></script><script>
 const told = [];
 window.finished = new Promise((done) => {
@@ -158,7 +167,7 @@ def read_addon() -> dict[str, bytes]:
 
 def play(folder: Path, browse: Browser, files: dict[str, bytes], *words: str) -> tuple[int, str]:
     """Let Godot 4 run a project whose scene is `main.gd` on a node; return its exit code and what it told."""
-    files = files | {"main.tscn": SCENE.encode(), ".godot/global_script_class_cache.cfg": b"list=[]"}
+    files = files | {"main.tscn": SCENE.encode(), ".godot/global_script_class_cache.cfg": CLASSES}
     files["project.godot"] = b'config_version=5\n\n[application]\n\nrun/main_scene="res://main.tscn"\n'
     for path in ENGINE.glob("index.*"):
         shutil.copy(path, folder)
@@ -231,16 +240,22 @@ def test_the_tree_plays_states_of_any_name_and_the_glb_is_read_without_an_error(
 
 
 @pytest.mark.nightly
-def test_the_node_plays_ten_requests_on_the_glb_that_godot_has_read(
-    sample: Project, tmp_path: Path, browse: Browser
+@pytest.mark.parametrize("folder", ["", "people/ada/"])
+def test_the_exported_scene_plays_as_it_is_wherever_it_lies(
+    sample: Project, tmp_path: Path, browse: Browser, folder: str
 ) -> None:
+    """Opened as it was exported: its own requests and ten more, without an error or warning."""
     out = tmp_path / "out"
     registry.write_for_target(sample, "godot", out, Contents(ADA, base=ADA.parent))
-    files = read_addon() | {"main.gd": NODE.encode(), "sample.json": (out / "sample.json").read_bytes()}
-    code, told = play(tmp_path, browse, files | {"sample.motion": (out / "sample.glb").read_bytes()})
+    files = read_addon() | {"main.gd": OPEN.replace("FOLDER", folder).encode()}
+    for name in ("sample.json", "sample.motion", "sample.tscn", "sample.gd"):
+        files[folder + name] = (out / name).read_bytes()
+    code, told = play(tmp_path, browse, files)
     assert code == 0
     found = seen(told)
     assert len(found["states"]) == 10 and not {*found["states"]} - {"planned", "late", "done"}
     assert {"arms", "head", "speech"} <= {line.split()[0] for line in found["begun"]}
     assert any("on hips" in line for line in found["begun"])
+    assert sum(line.startswith("speech ") for line in found["begun"]) == 2  # the scene speaks, too
     assert len({tuple(hand) for hand in found["hands"]}) == len(found["hands"])
+    assert found["apart"] < 0.002  # radians, by the arc cosine of single precision

@@ -40,7 +40,7 @@ class Probe:
 @pytest.fixture(scope="module")
 def conformance(core: Path) -> Path:
     return compiled(
-        core.with_name("conformance.exe"), RUNTIME / "Conformance" / "Conformance.cs", references=(core,)
+        core.with_name("conformance.exe"), RUNTIME / "Tests" / "Conformance.cs", references=(core,)
     )
 
 

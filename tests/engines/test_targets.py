@@ -317,8 +317,8 @@ def test_xstate_goes_to_a_stance_and_plays_a_gesture_on_its_clock(written: Any, 
     assert rest["states"]["arms"] == "arms_hands_at_sides"
     assert [p["animation"] for p in rest["played"]] == list(rest["states"].values()), "its first loops"
     assert all(p["loop"] and p["blend"] == 0 for p in rest["played"])
-    assert going["states"]["arms"] == "arms_to_on_hips" and going["states"]["head"] == nod
-    assert {p["animation"] for p in going["played"]} == {"arms_to_on_hips", nod}
+    assert going["states"]["arms"] == "arms_to_on_hips_from_hands_at_sides" and going["states"]["head"] == nod
+    assert {p["animation"] for p in going["played"]} == {"arms_to_on_hips_from_hands_at_sides", nod}
     assert there["states"]["arms"] == "arms_on_hips" and there["states"]["head"] == rest["states"]["head"]
     assert still["states"] == there["states"]
     assert still["played"] == [{"missed": "arms.stance.nowhere"}], "what no layer is asked for is nobody's"
@@ -330,7 +330,7 @@ def test_xstate_goes_to_a_stance_and_plays_a_gesture_on_its_clock(written: Any, 
     _, again = run("xstate.mjs", "xstate", chart, script)
     assert [p.get("missed", p.get("animation")) for p in again["played"]] == [
         f"head.action.{nod}",
-        "arms_to_on_hips",
+        "arms_to_on_hips_from_hands_at_sides",
     ], "what comes too early is told, and only for its layer"
 
 

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
+import yaml
 
+from metagraph import __version__
+from metagraph.engines.targets import registry
 from tests.engines.csharp_runtime import CORE, RUNTIME, STICK, compiled, mono, needs_mono
 
 pytestmark = needs_mono
@@ -41,8 +47,12 @@ namespace UnityEngine
         public int GetBlendShapeFrameCount(int shape) { return 1; }
         public float GetBlendShapeFrameWeight(int shape, int frame) { return 100f; }
     }
+    public class GameObject : Object { }
+    public sealed class RequireComponent : Attribute { public RequireComponent(Type type) { } }
     public class Component : Object
     {
+        public GameObject gameObject;
+        public T GetComponent<T>() { return (T)(object)all.Find(c => c is T); }
         public static List<Component> all = new List<Component>();
         public Transform transform;
         public T[] GetComponentsInChildren<T>(bool inactive) { return all.FindAll(c => c is T).ConvertAll(c => (T)(object)c).ToArray(); }
@@ -186,7 +196,9 @@ def scene(core: Path) -> Path:
     program.write_text(SCENE)
     types = compiled(core.with_name("UnityEngine.dll"), engine)
     component = compiled(
-        core.with_name("component.dll"), RUNTIME / "Unity" / "MetagraphCharacter.cs", references=(core, types)
+        core.with_name("component.dll"),
+        RUNTIME / "Runtime" / "Component" / "MetagraphCharacter.cs",
+        references=(core, types),
     )
     return compiled(core.with_name("scene.exe"), program, references=(core, types, component))
 
@@ -298,12 +310,125 @@ def test_what_the_readme_shows_compiles(scene: Path) -> None:
     compiled(scene.with_name("readme.exe"), source, references=references)
 
 
-def test_the_package_is_one_that_unity_can_take() -> None:
-    package = json.loads((RUNTIME / "package.json").read_bytes())
-    assert package["unity"] == "2019.4"
-    core, unity = (
-        json.loads(next((RUNTIME / part).glob("*.asmdef")).read_bytes()) for part in ("Core", "Unity")
+EDITOR = r"""
+using System;
+using UnityEngine;
+
+namespace UnityEditor
+{
+    public sealed class InitializeOnLoadAttribute : Attribute { }
+    public static class ObjectFactory
+    {
+        public static event Action<Component> componentWasAdded;
+        public static void Add(Component one) { componentWasAdded(one); }
+    }
+    public static class PrefabUtility
+    {
+        public static string GetPrefabAssetPathOfNearestInstanceRoot(UnityEngine.Object one) { return one.name; }
+    }
+    public static class AssetDatabase
+    {
+        public static T LoadAssetAtPath<T>(string path) where T : UnityEngine.Object, new() { return new T { name = path }; }
+    }
+}
+"""
+
+ADDING = r"""
+using System;
+using System.Runtime.CompilerServices;
+using Metagraph;
+using UnityEngine;
+
+public static class Adding
+{
+    public static void Main()
+    {
+        RuntimeHelpers.RunClassConstructor(typeof(ExportFinder).TypeHandle);
+        var found = new MetagraphCharacter { gameObject = new GameObject { name = "Assets/people/ada.glb" } };
+        UnityEditor.ObjectFactory.Add(found);
+        UnityEditor.ObjectFactory.Add(new Transform());
+        Console.WriteLine(found.export.name + " " + found.glb.name);
+        var alone = new MetagraphCharacter { gameObject = new GameObject { name = "" } };
+        UnityEditor.ObjectFactory.Add(alone);
+        var given = new MetagraphCharacter { gameObject = found.gameObject, export = new TextAsset { name = "mine" } };
+        UnityEditor.ObjectFactory.Add(given);
+        Console.WriteLine((alone.export == null) + " " + given.export.name + " " + (given.glb == null));
+    }
+}
+"""
+
+
+def test_a_component_that_is_added_finds_its_export(scene: Path) -> None:
+    """The files beside the model; what is given already stays."""
+    editor, source = scene.with_name("editor.cs"), scene.with_name("adding.cs")
+    editor.write_text(EDITOR)
+    source.write_text(ADDING)
+    references = tuple(
+        scene.with_name(name) for name in ("metagraph.dll", "UnityEngine.dll", "component.dll")
     )
-    assert core["noEngineReferences"]
-    assert unity["references"] == [core["name"]]
+    types = compiled(scene.with_name("UnityEditor.dll"), editor, references=references)
+    finder = RUNTIME / "Editor" / "ExportFinder.cs"
+    program = compiled(scene.with_name("adding.exe"), source, finder, references=(*references, types))
+    done = mono(program)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.splitlines() == [
+        "Assets/people/ada.json Assets/people/ada.glb.bytes",
+        "True mine True",
+    ]
+
+
+def test_the_packages_sample_compiles(scene: Path) -> None:
+    references = tuple(
+        scene.with_name(name) for name in ("metagraph.dll", "UnityEngine.dll", "component.dll")
+    )
+    sample = RUNTIME / "Samples~" / "Talking" / "Greeter.cs"
+    compiled(scene.with_name("sample.dll"), sample, references=references)
+
+
+def test_the_package_is_laid_out_as_unity_asks() -> None:
+    """https://docs.unity3d.com/Manual/cus-layout.html: the folders, each with an assembly, and the pages."""
+    package = json.loads((RUNTIME / "package.json").read_bytes())
+    assert package["unity"] == "2019.4" and package["version"] == __version__
+    assert re.fullmatch(r"[a-z0-9]+(\.[a-z0-9-]+){2,}", package["name"])
+    assert all((RUNTIME / sample["path"]).is_dir() for sample in package["samples"])
+    for page in (
+        "README.md",
+        "CHANGELOG.md",
+        "LICENSE.md",
+        "Third Party Notices.md",
+        "Documentation~/index.md",
+    ):
+        assert (RUNTIME / page).stat().st_size
+    changes = (RUNTIME / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert f"## [{__version__}]" in changes
+    assemblies = {path.parent: json.loads(path.read_bytes()) for path in RUNTIME.rglob("*.asmdef")}
+    names = {each["name"] for each in assemblies.values()}
+    assert len(names) == len(assemblies) == 5
+    for source in RUNTIME.rglob("*.cs"):
+        assert len([folder for folder in source.parents if folder in assemblies]) == 1, source
+    for folder, each in assemblies.items():
+        assert set(each["references"]) <= names
+        within = folder.relative_to(RUNTIME).parts[0]
+        assert (each.get("includePlatforms") == ["Editor"]) == (within in ("Editor", "Tests"))
+    assert assemblies[RUNTIME / "Runtime" / "Core"]["noEngineReferences"]
     assert not any("UnityEngine" in path.read_text() for path in CORE)
+
+
+def test_every_file_of_the_exported_package_has_an_id_that_stays(toy: Any, tmp_path: Path) -> None:
+    """A component in somebody's scene is known by the id of its script."""
+    metas: list[dict[str, str]] = []
+    for name in ("first", "second"):
+        project = replace(toy.project(), name=name)
+        registry.write_for_target(project, "unity", tmp_path / name)
+        package = tmp_path / name / "Metagraph"
+        seen = {
+            path.relative_to(package).as_posix(): path
+            for path in package.rglob("*")
+            if not any(part.endswith("~") for part in path.relative_to(package).parts)
+        }
+        assert {f for f in seen if not f.endswith(".meta")} == {f[:-5] for f in seen if f.endswith(".meta")}
+        texts = {file: path.read_text() for file, path in seen.items() if file.endswith(".meta")}
+        assert all(isinstance(yaml.safe_load(text)["guid"], str | int) for text in texts.values())
+        metas.append({file: text.split("guid: ")[1][:32] for file, text in texts.items()})
+    assert metas[0] == metas[1]
+    assert len(set(metas[0].values())) == len(metas[0])

@@ -810,3 +810,51 @@ def clips_exported_again(made: MadeFault) -> None:
     action = next(a for a in project.actions() if a.clip == entry.id)
     told = [p for p in check_project(project) if p.action == action.id and p.severity != "hint"]
     made.expect(told, f"nothing is said of a clip that is {share} times as long")
+
+
+@fault
+def z_up_beside_y_up(made: MadeFault) -> None:
+    """One program wrote half of the files, another with other axes the rest."""
+    _as_bvh(made)
+    made.talker()
+    every, made.moves = made.moves, {}
+    for n, (name, move) in enumerate(every.items()):
+        made.figure = replace(made.figure, up="YZ"[n % 2])
+        made.moves = {name: move}
+        made.write()
+    made.moves = every
+    made.expect(not made.imported.failures, f"left out: {made.imported.failures[:1]}")
+    for name in every:
+        made.expect_kind(name, "stance" if name == "idle" else "gesture")
+    shapes = {e.motion.skeleton.fingerprint for e in made.project.clips.values() if e.motion is not None}
+    made.expect(len(shapes) == 1, "several skeletons are in the project")
+
+
+@fault
+def recordings_that_nobody_cut(made: MadeFault) -> None:
+    """Takes of a minute with many gestures are no gesture."""
+    for n in range(int(made.draw.integers(1, 4))):
+        take = made.idle(low=1.0, high=2.0)
+        for _ in range(int(made.draw.integers(14, 20))):
+            take = take.then(made.gesture(low=1.8, high=2.6)).then(made.idle(low=0.8, high=1.5))
+        made.moves[f"take_{n + 1}"] = take
+    made.write()
+    for name in made.moves:
+        made.expect_kind(name, "aside")
+        made.expect("recording" in made.found.aside.get(made.id(name), ""), f"{name}: nothing is said")
+
+
+@fault
+def idles_of_one_name_in_folders(made: MadeFault) -> None:
+    """Each mood has a folder with an idle of its own pose, and its gestures."""
+    for mood, pose in (("happy", HANG), ("angry", ON_HIPS), ("afraid", CROSSED)):
+        made.moves[f"{mood}/idle"] = made.idle(pose)
+        for what in list(GESTURES)[:3]:
+            made.moves[f"{mood}/{what}"] = made.gesture(pose, what)
+    made.write()
+    stances = {
+        Path(made.project.clips[c].path).parent.name: p.stance.value
+        for c, p in made.found.proposals.items()
+        if p.kind.value == "gesture" and p.stance is not None
+    }
+    made.expect(len(set(stances.values())) == len(stances) == 3, f"stances of the moods: {stances}")

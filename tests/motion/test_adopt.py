@@ -117,6 +117,8 @@ def test_a_joint_between_shared_ones_is_no_other_skeleton_and_all_stand_where_th
     ) == pytest.approx(0)
     before = bent(source)
     adopted = adopt(before, target)
+    told = "handed down" if more else "at rest while it plays"
+    assert any("'chest'" in note and told in note for note in adopted.notes)
     _, places = source.globals(before.poses())
     _, found = target.globals(adopted.poses())
     for name in NAMES:
@@ -141,6 +143,43 @@ def test_many_joints_between_shared_ones_are_another_skeleton() -> None:
         np.array([offsets[o] for o in order]),
     )
     assert "5 joints between" in str(describe_difference(other, ours))
+
+
+def test_limbs_that_lead_another_way_from_their_joints_are_another_skeleton() -> None:
+    hanging, leaning = OFFSETS.copy(), OFFSETS.copy()
+    hanging[4] = [0, -0.3, 0]  # the same joints, whose arm hangs where the other is stretched out
+    leaning[4] = [0.29, 0.08, 0]
+    assert "'arm' point another way" in str(describe_difference(skeleton(offsets=hanging), skeleton()))
+    assert describe_difference(skeleton(offsets=leaning), skeleton()) is None
+    with pytest.raises(SkeletonMismatchError, match="point another way"):
+        adopt(clip(skeleton(offsets=hanging)), skeleton())
+
+
+def test_axes_that_one_turn_leads_to_the_project_s_are_turned_and_all_stand_where_they_stood(
+    toy: Any,
+) -> None:
+    s, wave = toy.skeleton, toy.clip("wave")
+    turn = rotation.from_axis_angle(np.array([1.0, 0, 0]), np.radians(-90))  # Z up, in the file's own axes
+    count = len(s)
+    below = np.arange(1, count)
+
+    def turned(rotations: np.ndarray, translations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        around = rotation.multiply(rotations.astype(float), rotation.conjugate(turn))
+        around[..., below, :] = rotation.multiply(turn, around[..., below, :])
+        moved = translations.astype(float).copy()
+        moved[..., below, :] = rotation.rotate_vectors(turn, moved[..., below, :])
+        return around, moved
+
+    file = Skeleton(s.names, s.parents, *turned(s.rest_rotations, s.rest_translations))
+    poses = wave.poses()
+    rotations, _ = turned(poses.rotations, poses.translations)
+    other = Clip("wave", file, wave.fps, rotations, poses.translations[:, :1])
+    _, before = file.globals(other.poses())
+    adopted = adopt(other, s)
+    _, after = s.globals(adopted.poses())
+    assert np.allclose(after, before, atol=1e-5)
+    assert np.allclose(adopted.rotations, wave.rotations, atol=1e-5)
+    assert any("axes of its joints were turned" in note for note in adopted.notes)
 
 
 def test_other_names_are_said_to_be_other_names() -> None:
@@ -185,6 +224,7 @@ def test_names_that_differ_by_what_all_joints_bear_are_the_same_skeleton(ours: s
     assert describe_difference(own.skeleton, project) is None
     adopted = adopt(own, project)
     assert adopted.skeleton is project
+    assert any(f"'{theirs.format('hips')}' for '{ours.format('hips')}'" in note for note in adopted.notes)
     np.testing.assert_array_equal(adopted.rotations, own.rotations)
 
 

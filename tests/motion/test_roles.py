@@ -20,6 +20,7 @@ from metagraph.motion.roles import (
     find_missing_roles,
     find_roles,
     is_humanoid,
+    is_mirrored,
 )
 from metagraph.motion.skeleton import Skeleton
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
@@ -492,3 +493,16 @@ def test_joints_of_the_zoo_have_the_roles_they_are_named_for(zoo_files: dict[str
 @pytest.mark.parametrize("file", ["bird-animations.glb", "quad-creature-animations.glb"])
 def test_real_animals_are_told_apart_from_people(shared_data: Path, file: str) -> None:
     assert not is_humanoid(find_roles(read_clips(shared_data / "mesh2motion-cmu" / file)[0].skeleton))
+
+
+def test_a_figure_whose_left_is_on_its_right_is_mirrored_and_no_other_is() -> None:
+    body = mannequin_skeleton()
+    assert not is_mirrored(body)
+    flipped = body.rest_translations * np.array([-1.0, 1.0, 1.0])  # as axes of the other handedness
+    turns = body.rest_rotations * np.array([1.0, -1.0, -1.0, 1.0])
+    assert is_mirrored(Skeleton(body.names, body.parents, turns, flipped))
+    feet = find_roles(body)
+    stumps = [j for side in ("left", "right") for j in body.descendants(feet[f"{side}_foot"])[1:]]
+    offsets = flipped.copy()
+    offsets[stumps] = 0.0
+    assert not is_mirrored(Skeleton(body.names, body.parents, turns, offsets)), "without toes nobody can tell"

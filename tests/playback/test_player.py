@@ -296,6 +296,24 @@ def test_a_clip_far_from_its_stance_is_led_in_and_out_too(project: Project, toy:
     assert apart(pose_at(plan, project, middle), clip_pose_at(project, cue.action, middle - cue.start)) < 1e-6
 
 
+def test_a_clip_that_begins_far_from_its_stance_does_its_own_movement_no_more_than_it_shows(
+    project: Project, toy: Any
+) -> None:
+    far = edits.add_clips(everywhere(project), [("waves.glb", 0, "", toy.clip("waves", 1.0, 1.5, swing=0.9))])
+    [clip] = [e.id for e in far.clips.values() if e.name == "waves"]
+    far = edits.update_actions(far, [toy.id(far, "rest long")], clip=clip)
+    plan = shown(far, toy, "rest long")
+    cue = plan.layers["arms"].cues[0]
+    times = np.linspace(cue.start, cue.start + cue.blend_in, 30)
+    stance = pose_at(make_plan(far, 10, idle=False), far, times).rotations
+    own = clip_pose_at(far, cue.action, times - cue.start).rotations
+    weight = np.broadcast_to(compute_cue_weight(cue, times)[:, None], own.shape[:2])
+    arm = toy.skeleton.index("LeftUpperArm")
+    expected = rotation.nlerp(stance, own, weight)[:, arm]
+    there = pose_at(plan, far, times).rotations[:, arm]
+    assert rotation.measure_angle_between(there, expected).max() < 1e-3
+
+
 def test_a_clip_that_begins_in_its_stance_keeps_its_own_speed_while_it_blends_in(
     project: Project, toy: Any
 ) -> None:

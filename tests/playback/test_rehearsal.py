@@ -13,6 +13,7 @@ from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Skeleton
 from metagraph.playback import continuity
 from metagraph.playback.own_moves import find_body_joints
 from metagraph.playback.rehearsal import LEAST_MINUTES, rehearse
@@ -83,6 +84,22 @@ def test_a_figure_above_or_under_the_floor_is_an_error_with_its_moment(sound: Pr
         found = [p for p in rehearse(changed(sound, lifted(metres)), SECONDS) if p.code == code]
         assert found and found[0].severity == "error" and "100 %" in found[0].message
         assert found[0].moment is not None and 0 <= found[0].moment < SECONDS
+
+
+def test_a_figure_without_legs_is_not_said_to_float(toy: Any) -> None:
+    legs = tuple(n for n in toy.skeleton.names if "Leg" in n or "Foot" in n)
+    keep = [j for j, name in enumerate(toy.skeleton.names) if name not in legs]
+    upper = Skeleton(
+        tuple(toy.skeleton.names[j] for j in keep),
+        np.array([keep.index(p) if p >= 0 else -1 for p in toy.skeleton.parents[keep].tolist()]),
+        toy.skeleton.rest_rotations[keep],
+        toy.skeleton.rest_translations[keep],
+    )
+    project = changed(
+        toy.project(), lambda clip: replace(clip, skeleton=upper, rotations=clip.rotations[:, keep])
+    )
+    project = replace(project, skeleton=upper)
+    assert not [p for p in rehearse(project, 10) if p.code == "play-in-air"]
 
 
 def test_a_control_joint_under_the_floor_is_no_part_of_the_figure(toy: Any) -> None:

@@ -47,6 +47,12 @@ def test_the_less_sure_a_layer_is_the_likelier_it_is_wrong(one: float, other: fl
     assert 0 <= chances[1] <= chances[0] <= 1
 
 
+def test_what_the_motion_says_alone_and_how_far_a_batch_disagrees_count() -> None:
+    unsure = replace(SURE, kind=replace(SURE.kind, confidence=0.8), seen=0.9)
+    assert estimate_chance_wrong(unsure) < estimate_chance_wrong(replace(unsure, seen=0.1))
+    assert estimate_chance_wrong(unsure) < estimate_chance_wrong(replace(unsure, disputed=0.3))
+
+
 def test_sources_that_disagree_are_told() -> None:
     told = replace(SURE, conflicts=("name says 'idle 2', but begins 0.1 cm from \"idle 1\"",))
     assert re.match(r"wrong with a probability of \d+ %: .* but begins 0.1 cm", explain_doubt(told))

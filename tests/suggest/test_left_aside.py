@@ -46,6 +46,16 @@ def test_a_name_that_says_a_kind_is_believed_before_all_else(exercises: MadeSet)
         assert explain_skipping(replace(SAYS_WALK, kind=kind.kind), t, guess(t, {})) == ""
 
 
+def test_a_long_recording_of_many_movements_is_left_aside_unless_its_name_says_a_kind(toy: Any) -> None:
+    stands = of(toy.clip("take", 40.0, 0.0, swing=0.05))
+    arms = replace(stands.layers["arms"], bouts=14)
+    take = replace(stands, layers={**stands.layers, "arms": arms})
+    why = explain_skipping(NameGuess(), take, guess(take, {}))
+    assert "a recording of 40 s with 14 movements" in why
+    assert explain_skipping(NameGuess(kind=Belief("stance", 0.9, "")), take, guess(take, {})) == ""
+    assert "recording" not in explain_skipping(NameGuess(), stands, guess(stands, {})), "an idle of 40 s"
+
+
 def test_a_single_frame_is_left_aside_unless_other_clips_begin_there(toy: Any) -> None:
     pose = of(toy.clip("pose", 1.0, 0.8).trimmed(0, 1))
     alone = explain_skipping(NameGuess(), pose, guess(pose, {}))

@@ -150,7 +150,8 @@ def test_a_gesture_without_a_loop_in_its_stance_is_placed_and_the_stance_held_in
             and loop.timing.loop
             and (loop.timing.start, loop.timing.end) == (rest.start, rest.end)
         )
-        assert rest.reason.startswith("no clip rests there; '") and "holds still for its first" in rest.reason
+        told = "the first frame of" if rest.start == rest.end else "holds still for its first"
+        assert rest.reason.startswith("no clip rests there; ") and told in rest.reason
 
 
 def test_a_clip_that_only_lends_a_stance_a_moment_still_waits_to_be_placed(

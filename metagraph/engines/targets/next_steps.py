@@ -65,12 +65,13 @@ STEPS: Mapping[str, NextSteps] = {
     ),
     "godot": NextSteps(
         (
-            phrase("Copy this folder into your Godot project, and put '{stem}.glb' into a scene."),
-            phrase("Copy '{stem}.glb' to '{stem}.motion', from which the add-on reads the motion."),
-            phrase("Put the lines of README.md into a script on the scene's root."),
+            phrase("Copy the contents of this folder into your Godot project."),
+            phrase("Open '{stem}.tscn' and press F6: the character talks."),
+            phrase("Change the requests in '{stem}.gd'. 'addons/metagraph/README.md' describes all of them."),
         ),
         "engines/godot",
-        guide="README.md",
+        "gdscript",
+        '$Performer.gesture(["greeting"])\n$Performer.say("Hello! How are you?")\n',
     ),
     "blender": NextSteps(
         (
@@ -92,11 +93,13 @@ STEPS: Mapping[str, NextSteps] = {
     ),
     "unity": NextSteps(
         (
-            phrase("Copy 'Metagraph' into the Packages folder of your Unity project."),
-            phrase("Import '{stem}.glb' with glTFast or UnityGLTF, and put it into the scene."),
             phrase(
-                "Add the component MetagraphCharacter to it, and give it the JSON and the GLB as .glb.bytes."
+                "Copy 'Metagraph' into the Packages folder of your Unity project, and all else into Assets."
             ),
+            phrase(
+                "Put '{stem}.glb' into the scene. Unity imports it with the package glTFast or UnityGLTF."
+            ),
+            phrase("Add the component MetagraphCharacter to it. It finds its files. Press Play."),
         ),
         "engines/unity",
         "csharp",

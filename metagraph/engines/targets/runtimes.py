@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
 
 from metagraph import engines
 from metagraph.common.wording import phrase
-from metagraph.engines.export import AIFF, OGG_AND_MP3, WAV, Imported, LineSounds, write_project_files
+from metagraph.engines.export import (
+    AIFF,
+    OGG_AND_MP3,
+    WAV,
+    Imported,
+    LineSounds,
+    write_indented_export,
+    write_project_files,
+)
+from metagraph.engines.targets.godot_scene import MOTION, write_godot_scene
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
+from metagraph.engines.targets.unity_package import write_package_metas
 from metagraph.errors import FileError
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
-REQUESTS = (
-    "../../../../docs/agents/requests.md"  # where a README finds them here; an export carries them along
-)
-SPEECH = "../../../../docs/agents/speech.md"
+# Where READMEs find requests here; an export carries them along.
+REQUESTS = re.compile(r"(?:\.\./)+docs/agents/requests\.md")
+SPEECH = re.compile(r"(?:\.\./)+docs/agents/speech\.md")
 BML = Loss(phrase("only the desktop app reads requests in Behaviour Markup Language"))
 
 
@@ -34,6 +44,8 @@ def write_with_sounds(order: ExportOrder, imported: Imported | None = None) -> E
         given.compress,
         given.base,
     )
+    if given.pretty:
+        write_indented_export(made.json)
     return ExportedFiles((made.json, made.glb, *made.sounds), made.warnings)
 
 
@@ -49,12 +61,12 @@ def copy_runtime(source: Path, target: Path, leave: tuple[str, ...] = ()) -> lis
             place.parent.mkdir(parents=True, exist_ok=True)
             if path.name == "README.md":
                 text = path.read_text(encoding="utf-8")
-                if REQUESTS in text or SPEECH in text:
+                if REQUESTS.search(text) or SPEECH.search(text):
                     page = place.with_name("requests.md")
                     shutil.copyfile(RUNTIMES / page.name, page)
                     out.append(page)
-                text = text.replace(SPEECH, "requests.md#speech-synthesisers")
-                place.write_text(text.replace(REQUESTS, "requests.md"), encoding="utf-8")
+                text = SPEECH.sub("requests.md#speech-synthesisers", text)
+                place.write_text(REQUESTS.sub("requests.md", text), encoding="utf-8")
             else:
                 shutil.copyfile(path, place)
         except OSError as error:
@@ -68,16 +80,37 @@ def copy_runtime(source: Path, target: Path, leave: tuple[str, ...] = ()) -> lis
     return out
 
 
-def _with(
-    runtime: str, under: str, imported: Imported | None = None
-) -> Callable[[ExportOrder], ExportedFiles]:
+def _with(runtime: str, under: str) -> Callable[[ExportOrder], ExportedFiles]:
     def write(order: ExportOrder) -> ExportedFiles:
-        made = write_with_sounds(order, imported)
+        made = write_with_sounds(order)
         return ExportedFiles(
             (*made.files, *copy_runtime(RUNTIMES / runtime, order.folder / under)), made.notes
         )
 
     return write
+
+
+def _copy_glb(order: ExportOrder, ending: str) -> Path:
+    """Copy the GLB under a name that an engine does not import, so that its bytes stay readable."""
+    target = order.folder / f"{order.stem}{ending}"
+    shutil.copyfile(order.folder / f"{order.stem}.glb", target)
+    return target
+
+
+def _godot(order: ExportOrder) -> ExportedFiles:
+    """Write the export, the add-on and a scene that plays."""
+    made = write_with_sounds(order, WAV | OGG_AND_MP3)
+    files = [_copy_glb(order, MOTION), *write_godot_scene(order.project, order.folder, order.stem)]
+    return ExportedFiles((*made.files, *files, *copy_runtime(RUNTIMES / "godot", order.folder)), made.notes)
+
+
+def _unity(order: ExportOrder) -> ExportedFiles:
+    """Write the export and a package whose files have their `.meta`."""
+    made = write_with_sounds(order, WAV | OGG_AND_MP3 | AIFF)
+    package = order.folder / "Metagraph"
+    files = copy_runtime(RUNTIMES / "unity", package)
+    metas = write_package_metas(package, files)
+    return ExportedFiles((*made.files, _copy_glb(order, ".glb.bytes"), *files, *metas), made.notes)
 
 
 PLUGIN = "Plugins/Metagraph"  # where Unreal looks for a project's plugins
@@ -115,8 +148,8 @@ TARGETS = (
     ExportTarget(
         "godot",
         phrase("Godot 4 add-on"),
-        phrase("JSON, GLB and the GDScript runtime in addons/metagraph/"),
-        _with("godot", ".", WAV | OGG_AND_MP3),
+        phrase("a scene that plays, JSON, GLB and the GDScript runtime in addons/metagraph/"),
+        _godot,
         (BML,),
         group=phrase("Same playback as the preview"),
     ),
@@ -124,7 +157,7 @@ TARGETS = (
         "unity",
         phrase("Unity package"),
         phrase("JSON, GLB and the C# runtime in Metagraph/"),
-        _with("unity", "Metagraph", WAV | OGG_AND_MP3 | AIFF),
+        _unity,
         (BML,),
         untried=phrase("compiled and tested outside Unity; not tested in Unity"),
         group=phrase("Same playback as the preview"),

@@ -43,7 +43,7 @@ class Contents:
     JSON, if there is one. `base` is the folder that the project's own paths are relative to, None to leave
     the lines' sounds where they are. `chosen` returns which sounds outside `base` the user, not only the
     project, has chosen; no others are copied. `compress` packs the GLB (EXT_meshopt_compression), for targets
-    that can read it.
+    that can read it. `pretty` breaks and indents the JSON, for people; it is more than twice as large.
     """
 
     character: Path | CharacterMesh | None = None
@@ -51,6 +51,7 @@ class Contents:
     base: Path | None = None
     chosen: Chosen = choose_nothing
     compress: bool = False
+    pretty: bool = False
 
 
 BARE = Contents()

@@ -14,7 +14,7 @@ from metagraph.speech.word_gestures import GestureRule
 
 JAVASCRIPT = RUNTIMES / "javascript" / "gesture_words.js"
 GODOT = RUNTIMES / "godot" / "addons" / "metagraph" / "core" / "gesture_words.gd"
-UNITY = RUNTIMES / "unity" / "Core" / "GestureWordLists.cs"
+UNITY = RUNTIMES / "unity" / "Runtime" / "Core" / "GestureWordLists.cs"
 CPP = RUNTIMES / "cpp" / "gesture_word_lists.hpp"
 _ABOUT = "Lexicons of gestures by language, as {} has them, with words that say little by themselves."
 _MADE = "Made from metagraph/speech/gesture_words/*.json; change those, and translate anew."

@@ -170,13 +170,22 @@ class JavaScript(Braces):
             super().assignment(node)
 
     def unpacked(self, node: x.Unpack) -> None:
-        names = put_in_brackets("[", [self.target(t) for t in node.targets], "]")
-        word = ("let " if node.changes else "const ") if node.new else ""
-        self.line((word, names, " = ", self.plain(node.value), ";"), node.beside)
+        places = [(f"{n}: ", self.target(t)) for n, t in enumerate(node.targets) if self.target(t)]
+        names, value = put_in_brackets("{ ", places, " }"), self.plain(node.value)
+        if node.new:
+            self.line(("let " if node.changes else "const ", names, " = ", value, ";"), node.beside)
+        else:
+            self.line(("(", names, " = ", value, ");"), node.beside)
+
+    def taken(self, names: list[str]) -> str:
+        """Return what takes the items of an array apart, by their places: `[a, b]` would make an object for
+        each.
+        """
+        return "{ " + ", ".join(f"{n}: {name}" for n, name in enumerate(names) if name) + " }"
 
     def each(self, node: x.ForEach) -> None:
         words = [self.local(n) for n in node.names]
-        name = words[0] if len(words) == 1 else f"[{', '.join(words)}]"
+        name = words[0] if len(words) == 1 else self.taken(words)
         over, of = node.over, f"for (const {name} of "
         given = over.arguments if isinstance(over, x.Builtin) else ()
         match over:
@@ -239,7 +248,7 @@ class JavaScript(Braces):
 
     def names(self, names: tuple[x.Local, ...]) -> str:
         words = [self.local(n) for n in names]
-        return f"({words[0]})" if len(words) == 1 else f"([{', '.join(words)}])"
+        return f"({words[0]})" if len(words) == 1 else f"({self.taken(words)})"
 
     def arrow(self, names: str, tests: list[x.Expression]) -> Document:
         body = tests[0] if len(tests) == 1 else x.Logic(x.BOOL, "and", tuple(tests))

@@ -23,7 +23,7 @@ from metagraph.engines.translation.source import SourceModule, SubsetError
 ROOT = Path(__file__).parents[3]
 PLACES: dict[type[Printer], Callable[[str], str]] = {  # where each language's file of a module is
     JavaScript: lambda word: f"javascript/{word}.js",
-    CSharp: lambda word: f"unity/Core/{make_pascal_case(word)}.cs",
+    CSharp: lambda word: f"unity/Runtime/Core/{make_pascal_case(word)}.cs",
     Cpp: lambda word: f"cpp/{word}.hpp",
     GDScript: lambda word: f"godot/addons/metagraph/core/{word}.gd",
 }

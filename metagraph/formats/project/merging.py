@@ -7,7 +7,7 @@ changed, or used again, stays and is reported. What both made under one id becom
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import count
 from typing import Any
@@ -287,8 +287,10 @@ class _Merger:
         return sorted(out, key=lambda one: one.get("at", 0.0)) if place.path[-1] == "markers" else out
 
     def bring_back(self, data: Data, *sides: Data) -> None:
-        """Keep clips and stances that one side removed where what the other side made needs them."""
+        """Keep clips, stances and states that one side removed where what the other side made needs them."""
         layers = data["layers"]
+        for layer, machine in data.get("manual", {}).items():
+            self._return_states(machine, [side.get("manual", {}).get(layer, {}) for side in sides])
         clips = [a["clip"] for graph in layers.values() for a in graph["actions"]]
         clips += [s["clip"] for machine in data.get("manual", {}).values() for s in machine.get("states", ())]
         self._return_to(data["clips"], clips, [side["clips"] for side in sides], phrase("clip"))
@@ -296,6 +298,17 @@ class _Merger:
             needed = [a[key] for a in graph["actions"] for key in ("stance", "end_stance") if a.get(key)]
             found = [side["layers"][layer]["stances"] for side in sides]
             self._return_to(graph["stances"], needed, found, phrase("stance"))
+
+    def _return_states(self, machine: Data, known: Sequence[Data]) -> None:
+        """Keep the states and aliases of a machine drawn by hand that its links and aliases need."""
+        ends = [link[key] for link in machine.get("links", ()) for key in ("source", "target")]
+        aliases = machine.setdefault("aliases", [])
+        self._return_to(aliases, ends, [one.get("aliases", []) for one in known], phrase("alias"))
+        ends += [state for alias in aliases for state in alias.get("states", ())]
+        ends += [alias["entry"] for alias in aliases if alias.get("entry")]
+        ends += [machine["start"]] if machine.get("start") else []
+        states = machine.setdefault("states", [])
+        self._return_to(states, ends, [one.get("states", []) for one in known], phrase("state"))
 
     def _return_to(
         self, there: list[Data], needed: Iterable[str], known: Iterable[list[Data]], kind: str

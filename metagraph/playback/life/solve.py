@@ -122,8 +122,8 @@ def breathe(body: Body, chain: list[Quaternion], full: float, droop: float, thru
     thrust: how far it leans into it.
     """
     for n, (axis, angle) in enumerate(body.breath):
-        if angle:
-            half = 0.5 * (full * angle + droop * body.bowed[n] + thrust * body.thrust[n])
+        half = 0.5 * (full * angle + droop * body.bowed[n] + thrust * body.thrust[n])
+        if half:
             s = sin(half)
             chain[n] = multiply_quaternions(chain[n], (axis[0] * s, axis[1] * s, axis[2] * s, cos(half)))
 

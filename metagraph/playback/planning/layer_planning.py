@@ -144,7 +144,7 @@ def draft(
             if not meta.written:
                 reports.append(Report(meta.request.id, "no-stance", why, layer, meta.start))
         return LayerDraft(layer, performer, False, done, waits, reports, old.past, cursor, written)
-    performer.begun = {cue.meta for cue in kept if cue.meta in waiting}
+    performer.begun = _begun(old, len(kept))
     if len(kept) > 0 and kept[-1].end > now:
         running = next((meta for meta in old.metas if meta.key == kept[-1].meta), None)
         performer.make_way(running, asked, now, running is not None and running.request.id in stopped)
@@ -160,6 +160,18 @@ def draft(
     placed, moved = replan([*future, *written, *asked], project.settings, busy)
     every = [*reports, *delayed, *moved]
     return LayerDraft(layer, performer, True, done, placed, every, old.past, cursor, written)
+
+
+def _begun(old: LayerPlan, kept: int) -> set[str]:
+    """Return the key of the meta action whose chain of transitions plays where the first cues are kept; none
+    if none does. An earlier action may have had the same key, so that only the last cue can be of a chain.
+    """
+    out: set[str] = set()
+    if 0 < kept < len(old.cues):
+        last, following = old.cues[kept - 1], old.cues[kept]
+        if last.meta == following.meta and following.start <= last.end:
+            out.add(last.meta)
+    return out
 
 
 def in_time(request: MetaRequest, moods: Moods) -> MetaRequest:

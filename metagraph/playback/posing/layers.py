@@ -24,6 +24,10 @@ Array = NDArray[Any]
 # Offsets on the joints a layer reaches: rotations [N, n, 4], translations [N, n, 3].
 Sample = tuple[Array, Array]
 
+# A clip is led while no joint is farther from the stance than the first, and crossfaded where one is farther
+# than the second: cosines of half that turn, about 30 and 60 degrees.
+LEAD_WITHIN, FADE_BEYOND = 0.966, 0.866
+
 _RESTING, _ENTERING, _FULL, _LEAVING = range(4)  # a cue's phases
 Met = tuple[int, bool, int, int]  # index of the rest, whether it fades in, index of the cue, the cue's phase
 
@@ -112,7 +116,7 @@ class _LayerStage:
             shown = crossfade(stance, shown, compute_cue_weight(cue, times))  # at its ends it moves
         elif phase != _FULL:
             edge = self._sample(motion, np.array([cue.entry if phase == _ENTERING else cue.last]))
-            shown = _lead(shown, stance, edge, 1 - compute_cue_weight(cue, times))
+            shown = _blend(shown, stance, edge, compute_cue_weight(cue, times))
         if cue.extent != 1:
             shown = _extended(shown, stance, cue.extent, self._scales)
         if moved is not None:
@@ -228,6 +232,19 @@ def _extended(shown: Sample, stance: Sample, extent: float, scales: Array) -> Sa
     factor = 1 + share * ease_blend((np.abs(apart[..., 3]) - 0.1) / 0.4)  # mood.turn_extent
     moved = stance[1] + (shown[1] - stance[1]) * (1 + share[:, None])
     return rotation.multiply(stance[0], rotation.scale_rotation(apart, factor)).astype(np.float32), moved
+
+
+def _blend(shown: Sample, stance: Sample, edge: Sample, weight: Array) -> Sample:
+    """Blend a clip in from, or out to, its stance, with `weight [N]` of the clip: lead it where its pose at
+    that edge is near the stance, crossfade where a joint has far to turn, and mix both between.
+
+    Led from afar, a limb would do its whole movement around a pose that the clip never has: hands that wave
+    overhead would swing through the body on their way up.
+    """
+    led = _lead(shown, stance, edge, 1 - weight)
+    near = np.abs(np.einsum("...i,...i->...", edge[0], stance[0])).min(axis=-1, initial=1.0)
+    far = ease_blend((LEAD_WITHIN - near) / (LEAD_WITHIN - FADE_BEYOND))
+    return crossfade(led, crossfade(stance, shown, weight), far) if far.any() else led
 
 
 def _lead(shown: Sample, stance: Sample, edge: Sample, weight: Array) -> Sample:

@@ -34,7 +34,9 @@ LOOP_VOTE = (
     1.5  # how much the name of a clip that rests in a stance counts to name it, beside one that begins there
 )
 ALIKE, ALIKE_VOTES = 0.8, 2.0  # share of a pose's clips that call it alike, and how many at least
-ONE_STANCE = 0.12  # heights within which poses that are called alike are one stance
+ONE_STANCE = 0.1  # heights within which poses that are called alike are one stance
+# The same for poses between which no word tells: each word calls both about as often
+ONE_POSE, BOTH = 0.06, 0.95
 LEAST_VOTES = 0.5  # clips, below which a word says nothing about a pose
 MEANS = 0.6  # of a word's clips that lie in another's pose, from which on it means the same stance
 NEVER = 0.3  # of how sure a source is at least, so that its vote counts
@@ -152,6 +154,12 @@ class StancePlaces:
                 self.by_key[shape.id] = replace(old, shape=shape)
                 self._of_shape[id(shape)] = shape.id
                 del free[n]
+        twins = _find_twins(shapes, votes)
+        for n, other in twins.items():
+            free.pop(n)
+            for mine in votes.values():
+                both = mine.pop(id(shapes[n]), 0.0) + mine.get(id(shapes[other]), 0.0)
+                mine[id(shapes[other])] = both
         pairs = sorted(
             (
                 (-count * count / spoken[word], word, n)
@@ -176,6 +184,8 @@ class StancePlaces:
             key = f"new {layer} {n + 1}"
             self.by_key[key] = StancePlace(key, layer, self._named(layer, shape, shapes), False, shape)
             self._of_shape[id(shape)] = key
+        for n, other in twins.items():
+            self._of_shape.setdefault(id(shapes[n]), self._of_shape[id(shapes[other])])
         for word, mine in votes.items():
             told, best = (layer, simplify_stance_name(word)), max(mine, key=lambda s: mine[s], default=None)
             if told not in self._of_word and best is not None and mine[best] >= MEANS * spoken[word]:
@@ -249,6 +259,28 @@ class StancePlaces:
 
     def count(self, layer: Layer) -> int:
         return max(2, sum(1 for p in self.by_key.values() if p.layer == layer))
+
+
+def _find_twins(shapes: Sequence[Shape], votes: Mapping[str, Mapping[int, float]]) -> dict[int, int]:
+    """Return, of the poses that are near another and called by the same words, each as often, which other it
+    is: idles and blinks of two characters whose faces rest a little differently.
+    """
+    if len(votes) < 2:
+        return {}
+    called = np.array([[mine.get(id(shape), 0.0) for mine in votes.values()] for shape in shapes])
+    sizes = np.linalg.norm(called, axis=-1)
+    out: dict[int, int] = {}
+    for n, shape in enumerate(shapes):
+        if shape.id or (called[n] >= LEAST_VOTES).sum() < 2:
+            continue
+        for other in range(n):
+            alike = called[n] @ called[other] >= BOTH * sizes[n] * sizes[other] > 0
+            if other in out or not alike:
+                continue
+            if measure_distance_from_stance(shapes[other], shape.names, shape.poses[0]) <= ONE_POSE:
+                out[n] = other
+                break
+    return out
 
 
 def _votes(heard: Sequence[ClipEvidence]) -> tuple[dict[str, dict[int, float]], dict[str, float]]:

@@ -24,6 +24,7 @@ from metagraph.suggest.words.patterns import (
 )
 from metagraph.suggest.words.stances import FoundStance, Stances, Words, is_low, label
 from metagraph.suggest.words.tokens import (
+    SEVERAL,
     FoundPhrase,
     TakenName,
     count_variant_words,
@@ -55,6 +56,7 @@ NEVER: Final = frozenset(
     + ("bind pose", "locomotion", "side step", "sidestep")
 )
 EXPLICIT: Final = 0.98  # how often a word for what is done, after its stance, says the kind rightly
+ALL_ALIKE: Final = 0.6  # the same for a word that all names of a batch have, which tells none from another
 _UP: Final = frozenset(("up", "stand", "rise", "get"))
 
 
@@ -134,6 +136,8 @@ class _Reader:
         self._patterns = patterns
         self._kinds = patterns.meanings["kinds"]
         self._joins = patterns.meanings["joins"]
+        each = [set(taken.words) for taken in self._taken.values()]
+        self._everywhere = frozenset(set.intersection(*each)) if len(each) >= SEVERAL else frozenset()
 
     # -- taking apart
 
@@ -346,7 +350,10 @@ class _Reader:
             best = max(said, key=lambda p: (p.end - p.start, -p.start))
             if any(p.meaning != best.meaning and p.end - p.start == best.end - best.start for p in said):
                 return Belief(cast("Kind", best.meaning), 0.55, _says(*(p.text for p in said)))
-            return Belief(cast("Kind", best.meaning), EXPLICIT if parse.own else 0.93, _says(best.text))
+            sure = EXPLICIT if parse.own else 0.93
+            if self._everywhere.issuperset(best.text.split()):
+                sure = ALL_ALIKE
+            return Belief(cast("Kind", best.meaning), sure, _says(best.text))
         if (
             stance and parse.own and any(len(w) > 2 for w in parse.act)
         ):  # shorter ones are directions: "head_dl"

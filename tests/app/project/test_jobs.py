@@ -9,7 +9,7 @@ import weakref
 import pytest
 from PySide6.QtCore import QThreadPool
 
-from app.project.jobs import Jobs
+from app.project.jobs import Jobs, WindowJob
 
 
 @pytest.fixture
@@ -174,3 +174,14 @@ def test_a_job_that_is_over_is_freed_with_all_it_holds(jobs, qtbot, quick, way):
     qtbot.wait(20)
     gc.collect()
     assert sum(ref() is not None for ref in alive) == 0
+
+
+def test_a_job_is_not_freed_while_its_thread_is_still_handing_over(qapp, qtbot):
+    job, gone = WindowJob("work", lambda job: None), []
+    job.destroyed.connect(lambda: gone.append(True))
+    job.handing_over = True
+    job.forget()
+    qtbot.wait(30)
+    assert not gone
+    job.handing_over = False
+    qtbot.waitUntil(lambda: bool(gone))

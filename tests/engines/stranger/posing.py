@@ -116,8 +116,8 @@ def stance(character: Character, rests: list[list[Any]], t: float) -> Pose:
     return shown
 
 
-def layer(character: Character, plan: dict[str, Any], t: float) -> Pose:
-    """docs/reference, "Blending"."""
+def layer(character: Character, plan: dict[str, Any], reached: Any, t: float) -> Pose:
+    """docs/reference, "Blending". reached: which joints [J] the layer moves."""
     rest, cue = stance(character, plan["rests"], t), playing(plan, t)
     if cue is None:
         return rest
@@ -132,9 +132,11 @@ def layer(character: Character, plan: dict[str, Any], t: float) -> Pose:
     else:
         edge = None
     if edge is not None:
-        left = 1.0 - cue_weight(cue, t)
-        d_edge, e_edge = offset(character, action, edge)
-        d, e = led((d, e), rest, (d_edge, e_edge), left)
+        weight = cue_weight(cue, t)
+        since = offset(character, action, edge)
+        least = min(1.0, float(np.abs((since[0] * rest[0]).sum(-1))[reached].min(initial=1.0)))
+        far = ease((0.966 - least) / (0.966 - 0.866))
+        d, e = mix(led((d, e), rest, since, 1.0 - weight), mix(rest, (d, e), weight), far)
     return masked(character, cue, (d, e), rest)
 
 
@@ -194,7 +196,7 @@ def pose(character: Character, layers: dict[str, Any], t: float) -> Pose:
             continue
         weights = character.data["layers"][name]["weights"]
         w = np.array([weights.get(part, 0.0) for part in character.parts])  # not listed: not moved
-        d, e = layer(character, layers[name], t)
+        d, e = layer(character, layers[name], w > 0.0, t)
         rotations = times(rotations, power(d, w))
         translations = translations + w[:, None] * e
     return rotations, translations

@@ -73,7 +73,7 @@ def test_csharp_says_the_same(means: dict[str, str], tmp_path: Path) -> None:
     (tmp_path / "EveryMeans.cs").write_text(means[".cs"])
     calls = "\n".join(f"System.Console.WriteLine(Metagraph.EveryMeansRules.{_pascal(n)}());" for n in MEANS)
     (tmp_path / "All.cs").write_text(f"static class All {{ static void Main() {{ {calls} }} }}")
-    core = [RUNTIMES / "unity" / "Core" / name for name in ("Basics.cs", "Language.cs")]
+    core = [RUNTIMES / "unity" / "Runtime" / "Core" / name for name in ("Basics.cs", "Language.cs")]
     command = ["mcs", "-langversion:7.2", "-out:all.exe", "EveryMeans.cs", "All.cs", *map(str, core)]
     made = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
     assert made.returncode == 0, made.stdout + made.stderr

@@ -13,10 +13,15 @@ from metagraph.formats.project.data import from_data, to_data
 from metagraph.formats.project.merging import merge_projects
 from metagraph.graph import edits
 from metagraph.graph.check import check_project
+from metagraph.graph.manual import edits as manual_edits
+from metagraph.graph.manual.groups import add_alias
 from metagraph.graph.model import Project
 from tests.projects import clip, histories
 
 pytestmark = pytest.mark.usefixtures("numbered_ids")
+
+
+SETS = ("tags", "joints", "hidden", "locked")  # lists in which the order says nothing
 
 
 def first() -> Project:
@@ -82,7 +87,11 @@ def test_no_edit_of_two_people_is_lost_without_a_report(data: st.DataObject) -> 
         old, here, there, now = (side.get(where) for side in (before, ours, others, after))
         if str(here) in new or new.intersection(where.split("/")):
             continue  # made by both, and two things if they are not the same
-        if here == there or there == old:
+        if where.rpartition("/")[2] in SETS:  # what either added and neither removed
+            kept, sides = set(old or ()), (set(here or ()), set(there or ()))
+            wanted = (sorted({x for x in sides[0] | sides[1] if x not in kept or x in sides[0] & sides[1]}),)
+            now = sorted(now or ())
+        elif here == there or there == old:
             wanted = (here,)
         elif here == old:
             wanted = (there,)
@@ -179,3 +188,29 @@ def test_notes_and_lines_are_things_of_their_own() -> None:
     mine = replace(base, notes={"c1": "old", "c2": "mine"})
     theirs = replace(base, notes={"c1": "new", "c3": "theirs"})
     assert merge_projects(base, mine, theirs).project.notes == {"c1": "new", "c2": "mine", "c3": "theirs"}
+
+
+@pytest.mark.parametrize("swapped", [True, False])
+def test_a_state_that_one_removed_and_the_other_linked_stays_and_is_told(swapped: bool) -> None:
+    base = manual_edits.add_states(first(), ["c2", "c3"], "arms")
+    one, other = base.manual["arms"].states
+    removed = manual_edits.remove_states(base, [one])
+    linked = manual_edits.add_links(base, "arms", [other], [one])
+    sides = (removed, linked) if swapped else (linked, removed)
+    found = merge_projects(base, *sides)
+    machine = found.project.manual["arms"]
+    assert set(machine.states) == {one, other} and len(machine.links) == 1
+    assert any("state" in words and "kept" in words for words in found.kept)
+
+
+@pytest.mark.parametrize("swapped", [True, False])
+def test_an_alias_that_one_removed_and_the_other_linked_comes_back_with_its_states(swapped: bool) -> None:
+    base = manual_edits.add_states(first(), ["c2", "c3", "c4"], "arms")
+    one, other, third = base.manual["arms"].states
+    base = add_alias(base, "arms", (one, other))
+    (alias,) = base.manual["arms"].aliases
+    removed = manual_edits.remove_states(base, [alias, one])
+    linked = manual_edits.add_links(base, "arms", [alias], [third])
+    sides = (removed, linked) if swapped else (linked, removed)
+    machine = merge_projects(base, *sides).project.manual["arms"]
+    assert set(machine.aliases[alias].states) == {one, other} <= set(machine.states)

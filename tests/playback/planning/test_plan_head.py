@@ -75,8 +75,18 @@ AGAIN = [
 ]
 
 
+# A name that was played 25 s ago is given again, twice, and then nothing is requested.
+REUSED = [
+    ([_ask("a"), _ask("b")], 3.0),
+    ([], 24.0),
+    ([_ask("a"), _ask("a", at=1.0), _ask("b"), _ask("b", at=1.0)], 4.0),
+    ([], 3.0),
+]
+
+
 @pytest.mark.nightly
 @example(AGAIN, 0, False)
+@example(REUSED, 0, False)
 @given(st.lists(st.tuples(asks, st.floats(3, 25)), min_size=4, max_size=12), st.integers(0, 9), st.booleans())
 @settings(max_examples=40, deadline=None)
 def test_whatever_is_asked_meanwhile_and_again(steps: list[Any], seed: int, remembers: bool) -> None:

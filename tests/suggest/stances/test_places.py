@@ -74,6 +74,18 @@ def test_a_clip_of_which_nobody_says_anything_makes_none_and_votes_for_none() ->
     assert not places.by_key and places.vote(one, "stance", "arms") == []
 
 
+def test_near_poses_that_no_word_tells_apart_are_one_stance_and_far_ones_stay() -> None:
+    for far, count in ((0.04, 1), (0.15, 2)):
+        shapes = [shape(0.0), shape(far)]
+        clips = [
+            heard(f"{word} {n} {kind}", word, {n: 0.95}, shapes, kind)
+            for n in (0, 1)
+            for word, kind in (("face", "stance"), ("stand", "fidget"), ("stand", "gesture"))
+        ]
+        places = StancePlaces(Project(), clips, {"arms": shapes})
+        assert len({key(places, each) for each in clips}) == count
+
+
 def test_words_that_differ_in_order_and_writing_are_one() -> None:
     clips = [heard("a", "arms crossed"), heard("b", "Crossed_Arms")]
     assert len(StancePlaces(Project(), clips, {}).by_key) == 1

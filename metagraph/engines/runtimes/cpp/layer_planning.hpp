@@ -37,6 +37,7 @@ inline Ref<LayerDraft> draft(
     const std::optional<std::string>& stance,
     const Ref<Moods>& moods
 );
+inline Set<std::string> _begun(const Ref<LayerPlan>& old, int kept);
 inline Ref<MetaRequest> in_time(const Ref<MetaRequest>& request, const Ref<Moods>& moods);
 inline Ref<MetaAction> meta_of(const Ref<MetaRequest>& request);
 inline std::string _begin(
@@ -223,13 +224,7 @@ inline Ref<LayerDraft> draft(
         }
         return lang::made<LayerDraft>(layer, performer, false, done, waits, reports, old->past, cursor, written);
     }
-    Set<std::string> found;
-    for (const auto& cue : kept) {
-        if (lang::contains(waiting, cue->meta)) {
-            found.insert(cue->meta);
-        }
-    }
-    performer->begun = found;
+    performer->begun = layer_planning::_begun(old, lang::len(kept));
     if (lang::len(kept) > 0 && lang::at(kept, -1)->end > now) {
         Ref<MetaAction> first;
         for (const auto& meta3 : old->metas) {
@@ -246,13 +241,13 @@ inline Ref<LayerDraft> draft(
         for (const auto& cue : performer->cues) {
             begun.insert(cue->end - cue->blend_out);
         }
-        List<Ref<Rest>> found2;
+        List<Ref<Rest>> found;
         for (const auto& rest : old->rests) {
             if (rest->fade_start < now || lang::contains(begun, rest->start)) {
-                found2.push_back(rest);
+                found.push_back(rest);
             }
         }
-        performer->rests = found2;
+        performer->rests = found;
     }
     performer->free = std::max(now - (performer->ready() - performer->free), performer->free);
     List<Ref<Report>> delayed{};
@@ -266,6 +261,20 @@ inline Ref<LayerDraft> draft(
     auto [placed, moved] = replan::replan(lang::together(future, written, asked), project->settings, busy);
     List<Ref<Report>> every = lang::together(reports, delayed, moved);
     return lang::made<LayerDraft>(layer, performer, true, done, placed, every, old->past, cursor, written);
+}
+
+/// Return the key of the meta action whose chain of transitions plays where the first cues are kept; none if none does.
+/// An earlier action may have had the same key, so that only the last cue can be of a chain.
+inline Set<std::string> _begun(const Ref<LayerPlan>& old, int kept) {
+    Set<std::string> out;
+    if (0 < kept && kept < lang::len(old->cues)) {
+        Ref<Cue> last = lang::at(old->cues, kept - 1);
+        Ref<Cue> following = lang::at(old->cues, kept);
+        if (last->meta == following->meta && following->start <= last->end) {
+            out.insert(last->meta);
+        }
+    }
+    return out;
 }
 
 /// Return a request that may begin earlier, by the extra time that its preparation takes in its mood.

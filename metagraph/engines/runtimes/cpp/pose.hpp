@@ -226,10 +226,8 @@ private:
         if (blending && cue->repeats()) {  // at its ends it moves
             mix(stance_, shown_, pose::cue_weight(*cue, time), count, shown_);
         } else if (blending) {
-            // Lead the clip in from, or out to, its stance: add what the stance differs from the clip's pose at that edge. A
-            // crossfade would hold the clip back and then hurry it.
             sample(action, entering ? cue->entry : pose::clip_seconds(cue, cue->end), other_, count);
-            lead(other_, stance_, 1 - pose::cue_weight(*cue, time), count);
+            blend(pose::cue_weight(*cue, time), count);
         }
         if (cue->extent != 1) extend(cue->extent, graph_->layer(action.layer).reach);
         for (const auto& [place, weight] : action.partly) {
@@ -250,6 +248,25 @@ private:
         sample(action, cue->cycle_from, other_, count);
         sample(action, cue->cycle_to, spare_, count);
         lead(other_, spare_, left, count);
+    }
+
+    /// Blend what is shown in from, or out to, its stance; the clip's pose at that edge is `other_`. Where that is near the
+    /// stance, lead the clip: add what the stance differs from it. A crossfade would hold the clip back and then hurry it. Where a
+    /// joint has far to turn, crossfade: led, it would do its whole movement around a pose that the clip never has.
+    void blend(double weight, std::size_t count) {
+        double alike = 1;
+        for (std::size_t i = 0; i < count; i++) {
+            const Quat& a = other_[i].rotation;
+            const Quat& b = stance_[i].rotation;
+            alike = std::min(alike, std::abs(a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w));
+        }
+        // Led while no joint is farther from the stance than the first, crossfaded where one is farther than the second: cosines
+        // of half that turn.
+        const double LEAD_WITHIN = 0.966, FADE_BEYOND = 0.866;
+        const double faded = rotation::ease((LEAD_WITHIN - alike) / (LEAD_WITHIN - FADE_BEYOND));
+        if (faded > 0) mix(stance_, shown_, weight, count, spare_);
+        lead(other_, stance_, 1 - weight, count);
+        if (faded > 0) mix(shown_, spare_, faded, count, shown_);
     }
 
     /// Add to what is shown a part of the way from a pose to another.

@@ -100,7 +100,7 @@ export function picked(key, purpose, weights) {
   let best = "";
   let shortest = Infinity;
   const start = absorb(key, purpose);
-  for (const [ident, weight] of weights) {
+  for (const { 0: ident, 1: weight } of weights) {
     if (weight > 0) {
       const time = -Math.log((mix(absorb(start, ident)) + 0.5) / ALL) / weight;
       if (time < shortest || (time === shortest && compareText(ident, best) < 0)) {

@@ -30,7 +30,7 @@ export function layerGoals(rig, project, plan, cue, place, time, strength) {
   const shown = [0, 0];
   if (cue !== null) {
     const weight = cueWeight(cue, time);
-    for (const [arm, hand] of HANDS.entries()) {
+    for (const { 0: arm, 1: hand } of HANDS.entries()) {
       if (_moves(rig, cue.action, arm, hand)) {
         shown[arm] = weight;
       }
@@ -73,7 +73,7 @@ function _loopGoals(rig, project, rest, time, strength, shown) {
     return out;
   }
   const left = shown.map((w) => strength * (1 - w));
-  const [start, end] = project.span(action);
+  const { 0: start, 1: end } = project.span(action);
   const seam = Math.min(Math.max(0, action.timing.blendIn), (end - start) / 2);
   const period = end - start - seam;
   if (period <= 0) {
@@ -105,7 +105,7 @@ function _loopGoals(rig, project, rest, time, strength, shown) {
  */
 function _goals(rig, project, action, seconds, shares) {
   const out = [];
-  const [start, end] = project.span(action);
+  const { 0: start, 1: end } = project.span(action);
   for (const span of action.contacts) {
     const arm = _arm(span);
     const to = rig.places.get(span.to) ?? null;

@@ -133,8 +133,8 @@ function _join(rig, pose, place) {
     pose.at[place] = pose.moved[place];
   } else {
     const turn = pose.turned[above];
-    const [x, y, z] = rotated(turn, pose.moved[place]);
-    const [ax, ay, az] = pose.at[above];
+    const { 0: x, 1: y, 2: z } = rotated(turn, pose.moved[place]);
+    const { 0: ax, 1: ay, 2: az } = pose.at[above];
     pose.turned[place] = times(turn, pose.local[place]);
     pose.at[place] = [ax + x, ay + y, az + z];
   }
@@ -211,13 +211,13 @@ function _hold(rig, pose, goals, side, wrist, hand) {
   let b = 0;
   let c = 0;
   let d = 0;
-  const [hx, hy, hz, hw] = hand;
+  const { 0: hx, 1: hy, 2: hz, 3: hw } = hand;
   let k;
   for (const goal of goals) {
     if (goal.arm === side && goal.weight > 0) {
       k = goal.weight;
-      const [px, py, pz] = plus(pose.at[goal.to], rotated(pose.turned[goal.to], goal.at));
-      const [qx, qy, qz, qw] = times(pose.turned[goal.to], goal.turn);
+      const { 0: px, 1: py, 2: pz } = plus(pose.at[goal.to], rotated(pose.turned[goal.to], goal.at));
+      const { 0: qx, 1: qy, 2: qz, 3: qw } = times(pose.turned[goal.to], goal.turn);
       x = x + k * px;
       y = y + k * py;
       z = z + k * pz;
@@ -234,7 +234,7 @@ function _hold(rig, pose, goals, side, wrist, hand) {
   const weight = Math.min(1, total);
   const mean = [x / total, y / total, z / total];
   let turn = _withinWrist(hand, unitTurn([a, b, c, d]));
-  const [tx, ty, tz, tw] = turn;
+  const { 0: tx, 1: ty, 2: tz, 3: tw } = turn;
   const rest = 1 - weight;
   k = tx * hx + ty * hy + tz * hz + tw * hw < 0 ? -weight : weight;
   turn = unitTurn([hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k]);
@@ -248,7 +248,7 @@ function _hold(rig, pose, goals, side, wrist, hand) {
  * @returns {[number, number, number, number]}
  */
 function _withinWrist(hand, turn) {
-  let [x, y, z, w] = times(turn, back(hand));
+  let { 0: x, 1: y, 2: z, 3: w } = times(turn, back(hand));
   if (w < 0) {
     x = -x;
     y = -y;
@@ -352,7 +352,7 @@ function _guarded(rig, pose, held, across) {
     let found = false;
     const first = number === 0;
     const shifts = range(rig.arms.length).map((side) => _shift(rig, ends, balls, side, held, across, whole, first));
-    for (const [side, shift] of shifts.entries()) {
+    for (const { 0: side, 1: shift } of shifts.entries()) {
       if (length(shift) > 0) {
         const hand = rig.arms[side].hand;
         bring(rig, pose, side, plus(pose.at[hand], shift), pose.turned[hand], STRAIGHT);
@@ -369,7 +369,7 @@ function _guarded(rig, pose, held, across) {
     pose.local = local;
     pose.turned = turned;
     pose.at = at;
-    for (const [side, arm] of rig.arms.entries()) {
+    for (const { 0: side, 1: arm } of rig.arms.entries()) {
       const way = minus(goals[side], pose.at[arm.hand]);
       if (length(way) > 0) {
         const goal = plus(pose.at[arm.hand], scaled(way, whole[side]));
@@ -403,9 +403,9 @@ export function capsuleEnds(rig, pose) {
  */
 function _balls(rig, ends) {
   const out = [];
-  for (const [n, capsule] of rig.capsules.entries()) {
-    const [ax, ay, az] = ends[2 * n];
-    const [bx, by, bz] = ends[2 * n + 1];
+  for (const { 0: n, 1: capsule } of rig.capsules.entries()) {
+    const { 0: ax, 1: ay, 2: az } = ends[2 * n];
+    const { 0: bx, 1: by, 2: bz } = ends[2 * n + 1];
     const x = bx - ax;
     const y = by - ay;
     const z = bz - az;
@@ -434,13 +434,13 @@ function _shift(rig, ends, balls, side, held, across, whole, first) {
   if (own <= 0) {
     return shift;
   }
-  for (const [i, mine] of rig.capsules.entries()) {
+  for (const { 0: i, 1: mine } of rig.capsules.entries()) {
     if (mine.arm !== side || mine.kind === OBSTACLE) {
       continue;
     }
-    const [mx, my, mz, size] = balls[i];
+    const { 0: mx, 1: my, 2: mz, 3: size } = balls[i];
     for (let k = 0; k < balls.length; k++) {
-      const [ox, oy, oz, most] = balls[k];
+      const { 0: ox, 1: oy, 2: oz, 3: most } = balls[k];
       const dx = ox - mx;
       const dy = oy - my;
       const dz = oz - mz;
@@ -462,7 +462,7 @@ function _shift(rig, ends, balls, side, held, across, whole, first) {
       if (share <= 0) {
         continue;
       }
-      const [x, y, z, gap] = apart(ends, 2 * i, 2 * k);
+      const { 0: x, 1: y, 2: z, 3: gap } = apart(ends, 2 * i, 2 * k);
       const radii = mine.radius + other.radius;
       if (gap >= radii || gap < 1e-09) {
         continue;
@@ -531,10 +531,10 @@ function _along(ends, i, k) {
  * @returns {[number, number, number, number]}
  */
 export function apart(ends, i, k) {
-  const [ax, ay, az] = ends[i];
-  const [bx, by, bz] = ends[i + 1];
-  const [cx, cy, cz] = ends[k];
-  const [dx, dy, dz] = ends[k + 1];
+  const { 0: ax, 1: ay, 2: az } = ends[i];
+  const { 0: bx, 1: by, 2: bz } = ends[i + 1];
+  const { 0: cx, 1: cy, 2: cz } = ends[k];
+  const { 0: dx, 1: dy, 2: dz } = ends[k + 1];
   const ux = bx - ax;
   const uy = by - ay;
   const uz = bz - az;

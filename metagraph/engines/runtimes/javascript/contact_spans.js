@@ -89,11 +89,11 @@ export function contactKey(span, seconds) {
         return after;
       }
       const part = (seconds - before.time) / (after.time - before.time);
-      const [ax, ay, az] = before.at;
-      const [bx, by, bz] = after.at;
+      const { 0: ax, 1: ay, 2: az } = before.at;
+      const { 0: bx, 1: by, 2: bz } = after.at;
       const at = [ax + (bx - ax) * part, ay + (by - ay) * part, az + (bz - az) * part];
-      const [px, py, pz, pw] = before.turn;
-      const [qx, qy, qz, qw] = after.turn;
+      const { 0: px, 1: py, 2: pz, 3: pw } = before.turn;
+      const { 0: qx, 1: qy, 2: qz, 3: qw } = after.turn;
       const other = px * qx + py * qy + pz * qz + pw * qw < 0 ? -part : part;
       const own = 1 - part;
       const x = px * own + qx * other;

@@ -48,7 +48,7 @@ export class CueShape {
  * @returns {CueShape}
  */
 export function shapeOf(project, action, request, now, speed) {
-  const [start, end] = project.span(action);
+  const { 0: start, 1: end } = project.span(action);
   let begin = now;
   let entry = start;
   let holdFrom = 0;
@@ -145,7 +145,7 @@ export function slackOf(request) {
  * @returns {number}
  */
 export function hurried(project, action, shape) {
-  const [start, end] = project.span(action);
+  const { 0: start, 1: end } = project.span(action);
   const repeats = cycleOf(action.kind, action.timing, start, end) > 0;
   if (action.kind !== "gesture" || action.timing.earliestExit !== null || repeats) {
     return shape.shortest;

@@ -36,7 +36,7 @@ export class LoopSpot {
  */
 export function loopSpot(project, rest, time) {
   const action = rest.action;
-  const [start, end] = project.span(action);
+  const { 0: start, 1: end } = project.span(action);
   const seam = Math.min(Math.max(0, action.timing.blendIn), (end - start) / 2);
   const period = end - start - seam;
   if (period <= 0) {

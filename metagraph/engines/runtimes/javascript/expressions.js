@@ -125,7 +125,7 @@ export function emphasesOn(life, track, voices, seed, cut, drawn, before) {
       continue;
     }
     let at;
-    for (const [n, peak] of stressed(voices, speech).entries()) {
+    for (const { 0: n, 1: peak } of stressed(voices, speech).entries()) {
       const begin = findLineStart(speech);
       at = Math.max(speech.start, begin + peak - EARLY);
       if (at >= speech.end || begin + peak < speech.start) {

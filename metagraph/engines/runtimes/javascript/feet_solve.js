@@ -41,8 +41,8 @@ export class FootGoal {
  * @returns {number}
  */
 export function footWay(a, b) {
-  const [ax, ay, az, aw] = a.turn;
-  const [bx, by, bz, bw] = b.turn;
+  const { 0: ax, 1: ay, 2: az, 3: aw } = a.turn;
+  const { 0: bx, 1: by, 2: bz, 3: bw } = b.turn;
   const along = Math.abs(ax * bx + ay * by + az * bz + aw * bw);
   const turn = 2 * Math.sqrt(Math.max(0, 2 - 2 * along));
   return length(minus(b.at, a.at)) + TURNING * turn;
@@ -88,7 +88,7 @@ export function plantFeet(rig, pose, goals, strength) {
       size += length(way);
       moved = true;
     }
-    const [x, y, z, w] = times(goal.turn, back(soles[side]));
+    const { 0: x, 1: y, 2: z, 3: w } = times(goal.turn, back(soles[side]));
     const turn = 2 * Math.sqrt(x * x + y * y + z * z);
     if (turn > NEARLY && part > 0) {
       const k = part * (turn - NEARLY) / turn;

@@ -364,7 +364,7 @@ export function measureLetter(code) {
 export function spelled(alphabet, text, duration) {
   const out = new Spelled();
   const plan = [];
-  for (const [word, pause] of splitWords(alphabet, alphabet.stripped(text))) {
+  for (const { 0: word, 1: pause } of splitWords(alphabet, alphabet.stripped(text))) {
     plan.push(...sounds(alphabet, word));
     if (pause > 0) {
       plan.push(new SpelledSound("", pause));

@@ -56,7 +56,7 @@ export function owners(ident) {
   while (true) {
     let dot;
     let number;
-    [left, dot, number] = partedLast(left, ".");
+    ({ 0: left, 1: dot, 2: number } = partedLast(left, "."));
     if (dot === "" || !isDigits(number)) {
       return out;
     }
@@ -72,7 +72,7 @@ export function owners(ident) {
  */
 export function makers(ident) {
   const out = owners(ident);
-  const [said, slash, number] = partedLast(out[out.length - 1], "/");
+  const { 0: said, 1: slash, 2: number } = partedLast(out[out.length - 1], "/");
   if (slash !== "" && isDigits(number)) {
     out.push(said);
   }

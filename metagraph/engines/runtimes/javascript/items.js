@@ -277,7 +277,7 @@ function _behindWords(old, told, new_, more, now) {
  * @returns {boolean}
  */
 export function alikeLooks(one, other) {
-  return one.length === other.length && zip(one, other).every(([a, b]) => a === b || _sameLook(a, b));
+  return one.length === other.length && zip(one, other).every(({ 0: a, 1: b }) => a === b || _sameLook(a, b));
 }
 
 /**
@@ -298,7 +298,7 @@ function _sameLook(a, b) {
  * @returns {boolean}
  */
 export function alikeSpeeches(one, other) {
-  return one.length === other.length && zip(one, other).every(([a, b]) => a === b || _sameSpeech(a, b));
+  return one.length === other.length && zip(one, other).every(({ 0: a, 1: b }) => a === b || _sameSpeech(a, b));
 }
 
 /**
@@ -323,7 +323,7 @@ function _sameSpeech(a, b) {
  */
 export function alikeModes(one, other) {
   return one.length === other.length
-    && zip(one, other).every(([a, b]) => a === b || (a.id === b.id && a.start === b.start && a.mode === b.mode));
+    && zip(one, other).every(({ 0: a, 1: b }) => a === b || (a.id === b.id && a.start === b.start && a.mode === b.mode));
 }
 
 /**
@@ -332,7 +332,7 @@ export function alikeModes(one, other) {
  * @returns {boolean}
  */
 export function alikePlaces(one, other) {
-  return one.length === other.length && zip(one, other).every(([a, b]) => a === b || _samePlace(a, b));
+  return one.length === other.length && zip(one, other).every(({ 0: a, 1: b }) => a === b || _samePlace(a, b));
 }
 
 /**
@@ -344,7 +344,7 @@ function _samePlace(a, b) {
   if (a.id !== b.id || a.start !== b.start || a.name !== b.name) {
     return false;
   }
-  return zip(a.point, b.point).every(([x, y]) => x === y);
+  return zip(a.point, b.point).every(({ 0: x, 1: y }) => x === y);
 }
 
 /**
@@ -353,7 +353,8 @@ function _samePlace(a, b) {
  * @returns {boolean}
  */
 export function alikeBlinks(one, other) {
-  return one.length === other.length && zip(one, other).every(([a, b]) => a === b || (a.id === b.id && a.start === b.start));
+  return one.length === other.length
+    && zip(one, other).every(({ 0: a, 1: b }) => a === b || (a.id === b.id && a.start === b.start));
 }
 
 /**
@@ -362,7 +363,7 @@ export function alikeBlinks(one, other) {
  * @returns {boolean}
  */
 export function alikeStays(one, other) {
-  return one.length === other.length && zip(one, other).every(([a, b]) => a === b || _sameStay(a, b));
+  return one.length === other.length && zip(one, other).every(({ 0: a, 1: b }) => a === b || _sameStay(a, b));
 }
 
 /**
@@ -383,7 +384,7 @@ function _sameStay(a, b) {
  * @returns {boolean}
  */
 export function alikeFelt(one, other) {
-  return one.length === other.length && zip(one, other).every(([a, b]) => a === b || _sameFelt(a, b));
+  return one.length === other.length && zip(one, other).every(({ 0: a, 1: b }) => a === b || _sameFelt(a, b));
 }
 
 /**

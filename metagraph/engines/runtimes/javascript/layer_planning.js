@@ -93,7 +93,7 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   const again = new Set(replaced);
   if (chain !== null) {
     let more;
-    [more, cursor] = write(chain, seed, end, kinds, old.cursor);
+    ({ 0: more, 1: cursor } = write(chain, seed, end, kinds, old.cursor));
     for (const meta of [...old.written, ...more]) {
       if (meta.start >= now) {
         written.push(meta);
@@ -138,7 +138,7 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
     }
     return new LayerDraft(layer, performer, false, done, waits, reports, old.past, cursor, written);
   }
-  performer.begun = new Set(kept.filter((cue) => waiting.has(cue.meta)).map((cue) => cue.meta));
+  performer.begun = _begun(old, kept.length);
   if (kept.length > 0 && kept[kept.length - 1].end > now) {
     const running = old.metas.find((meta) => meta.key === kept[kept.length - 1].meta) ?? null;
     performer.makeWay(running, asked, now, running !== null && stopped.has(running.request.id));
@@ -149,16 +149,35 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   }
   performer.free = Math.max(now - (performer.ready - performer.free), performer.free);
   let delayed;
-  [asked, delayed] = delay(asked, performer.ready, project.settings);
+  ({ 0: asked, 1: delayed } = delay(asked, performer.ready, project.settings));
   let busy = -Infinity; // what runs keeps the time it was wanted for, from the models
   for (const meta of done) {
     if (!meta.written) {
       busy = Math.max(busy, meta.end);
     }
   }
-  const [placed, moved] = replan([...future, ...written, ...asked], project.settings, busy);
+  const { 0: placed, 1: moved } = replan([...future, ...written, ...asked], project.settings, busy);
   const every = [...reports, ...delayed, ...moved];
   return new LayerDraft(layer, performer, true, done, placed, every, old.past, cursor, written);
+}
+
+/**
+ * Return the key of the meta action whose chain of transitions plays where the first cues are kept; none if none does. An
+ * earlier action may have had the same key, so that only the last cue can be of a chain.
+ * @param {LayerPlan} old
+ * @param {number} kept
+ * @returns {Set<string>}
+ */
+function _begun(old, kept) {
+  const out = new Set([]);
+  if (0 < kept && kept < old.cues.length) {
+    const last = old.cues[kept - 1];
+    const following = old.cues[kept];
+    if (last.meta === following.meta && following.start <= last.end) {
+      out.add(last.meta);
+    }
+  }
+  return out;
 }
 
 /**

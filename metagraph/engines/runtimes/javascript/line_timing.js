@@ -157,9 +157,11 @@ export function alikeTimings(one, other) {
   if (one.words.length !== other.words.length || one.marks.length !== other.marks.length) {
     return false;
   }
-  const words = zip(one.words, other.words).every(([a, b]) => a.text === b.text && a.start === b.start && a.end === b.end);
+  const words = zip(one.words, other.words).every(({ 0: a, 1: b }) =>
+    a.text === b.text && a.start === b.start && a.end === b.end);
   return words
-    && zip(one.marks, other.marks).every(([a, b]) => a.at === b.at && a.viseme === b.viseme && a.weight === b.weight);
+    && zip(one.marks, other.marks).every(({ 0: a, 1: b }) =>
+      a.at === b.at && a.viseme === b.viseme && a.weight === b.weight);
 }
 
 /**
@@ -203,7 +205,7 @@ export function setOf(marks) {
 export function wrongIn(words, marks, name, duration) {
   let last = 0;
   let why;
-  for (const [n, word] of words.entries()) {
+  for (const { 0: n, 1: word } of words.entries()) {
     const place = `words[${n}] '${word.text}'`;
     why = _outOfRange(word.start);
     if (why === "" && word.start < last) {
@@ -226,7 +228,7 @@ export function wrongIn(words, marks, name, duration) {
   }
   const found = name === "" ? setOf(marks) : name;
   last = 0;
-  for (const [n, mark] of marks.entries()) {
+  for (const { 0: n, 1: mark } of marks.entries()) {
     why = _outOfRange(mark.at);
     if (why === "" && mark.at < last) {
       why = `comes at ${thousandths(mark.at)} s, before the one before it; put visemes in order`;
@@ -277,7 +279,7 @@ export function timingOf(alphabet, words, marks, name) {
   const table = _table(name === "" ? setOf(marks) : name);
   const shown = marks.map((m) => new VisemeMark(m.at, table.get(m.viseme), m.weight * (WEAK.get(m.viseme) ?? 1)));
   const said = [];
-  for (const [n, word] of words.entries()) {
+  for (const { 0: n, 1: word } of words.entries()) {
     let end = word.end === null ? word.start + WORD + LETTER * alphabet.letters(word.text).length : word.end;
     if (n + 1 < words.length) {
       end = Math.min(end, words[n + 1].start);
@@ -298,7 +300,7 @@ export function timingOf(alphabet, words, marks, name) {
  */
 export function measureText(alphabet, text) {
   let out = 0;
-  for (const [word, pause] of splitWords(alphabet, text)) {
+  for (const { 0: word, 1: pause } of splitWords(alphabet, text)) {
     out += _measureWord(alphabet, word) + pause / PACE;
   }
   return out;
@@ -315,7 +317,7 @@ export function paceText(alphabet, text, seconds) {
   const scale = seconds === null ? 1 : seconds / Math.max(measureText(alphabet, text), 0.001);
   let at = 0;
   const words = [];
-  for (const [word, pause] of splitWords(alphabet, text)) {
+  for (const { 0: word, 1: pause } of splitWords(alphabet, text)) {
     const end = at + scale * _measureWord(alphabet, word);
     if (word !== "") {
       words.push(new SpokenWord(word, at, end));
@@ -403,7 +405,7 @@ export function timedSounds(alphabet, timing) {
   }
   const shown = new Spelled();
   let before = "sil";
-  for (const [mark, end] of zip(timing.marks, _ends(timing.marks))) {
+  for (const { 0: mark, 1: end } of zip(timing.marks, _ends(timing.marks))) {
     if (mark.viseme !== "sil" && end > mark.at) {
       shown.pieces.push(new MouthPiece(mark.at, end, mark.viseme, mark.weight));
       if (VOWELS.includes(mark.viseme) && !VOWELS.includes(before) && mark.weight > 0) {
@@ -541,7 +543,7 @@ export function restarts(old, new_, said) {
     return same < new_.words.length && !again && new_.words[0].start < _end(old.words[0]);
   }
   if (old.marks.length > 0 && new_.marks.length > 0) {
-    again = zip(old.marks, new_.marks).every(([a, b]) => a.viseme === b.viseme && Math.abs(a.at - b.at) < SLACK);
+    again = zip(old.marks, new_.marks).every(({ 0: a, 1: b }) => a.viseme === b.viseme && Math.abs(a.at - b.at) < SLACK);
     const first = new_.marks[0].at;
     return !again && first < old.marks[0].at + SLACK && first < said;
   }

@@ -40,7 +40,7 @@ export function write(chain, seed, until, kinds = null, cursor = BEGIN) {
   let number = cursor.number;
   let state = cursor.state;
   let time = cursor.time;
-  const openTo = chain.states.map(([, kind]) => (kinds === null || kinds.has(kind)) ? 1 : 0);
+  const openTo = chain.states.map(({ 1: kind }) => (kinds === null || kinds.has(kind)) ? 1 : 0);
   const rows = new Map();
   const out = [];
   const able = openTo.some((p) => p > 0);
@@ -55,7 +55,7 @@ export function write(chain, seed, until, kinds = null, cursor = BEGIN) {
       rows.set(state, _row(chain, state, openTo));
     }
     state = Number(picked(key, "state", rows.get(state)));
-    const [limb, kind] = chain.states[state];
+    const { 0: limb, 1: kind } = chain.states[state];
     const seconds = length(chain, state, key);
     let tags = [...splitWords(chain.tag(state))];
     if (kind === "gesture" && chain.tags.length === 0) {
@@ -85,12 +85,12 @@ export function write(chain, seed, until, kinds = null, cursor = BEGIN) {
 function _row(chain, state, openTo) {
   let row = [...openTo];
   if (0 <= state && state < row.length) {
-    row = zip(chain.matrix[state], openTo).map(([p, may]) => p * may);
+    row = zip(chain.matrix[state], openTo).map(({ 0: p, 1: may }) => p * may);
   }
   if (!row.some((p) => p > 0)) {
     row = [...openTo];
   }
-  return new Map([...row.entries()].filter(([i, p]) => p > 0).map(([i, p]) => [String(i), p]));
+  return new Map([...row.entries()].filter(({ 0: i, 1: p }) => p > 0).map(({ 0: i, 1: p }) => [String(i), p]));
 }
 
 /**
@@ -124,7 +124,7 @@ export function length(chain, state, key) {
   if (chain.lengths.length === 0) {
     return 1 + 2 * chanceOf(key, "length");
   }
-  const [mean, deviation] = chain.lengths[state];
+  const { 0: mean, 1: deviation } = chain.lengths[state];
   return logNormal(mean, deviation, chanceOf(key, "length"), chanceOf(key, "length2"));
 }
 

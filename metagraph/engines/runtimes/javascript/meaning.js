@@ -276,7 +276,7 @@ export class Meaning {
       if (stroke !== null) {
         start = Math.max(0, stroke - lead(this.project, action));
       }
-      const [begins, ends] = this.project.span(action);
+      const { 0: begins, 1: ends } = this.project.span(action);
       const repeats = cycleOf(action.kind, action.timing, begins, ends) > 0;
       const duration = repeats ? ask.duration : null;
       let request = new MetaRequest(
@@ -457,7 +457,7 @@ export class Meaning {
     if (line === null || !ask.gestures) {
       return "";
     }
-    for (const [n, inner] of line.asks.entries()) {
+    for (const { 0: n, 1: inner } of line.asks.entries()) {
       if (inner.do === "say") {
         return "a line would say another line; its asks may not";
       }

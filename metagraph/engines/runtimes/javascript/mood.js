@@ -199,7 +199,7 @@ export function moodAt(moods, seconds) {
  */
 export function lasting(told, seconds) {
   const out = [];
-  for (const [place, one] of told.entries()) {
+  for (const { 0: place, 1: one } of told.entries()) {
     if (one.end <= seconds - FADE) {
       continue;
     }
@@ -403,7 +403,7 @@ export function madeFor(mood, tags) {
  * @returns {number}
  */
 export function distance(mood, name) {
-  const [valence, arousal] = MOODS.get(name);
+  const { 0: valence, 1: arousal } = MOODS.get(name);
   const x = mood.valence - valence;
   const y = mood.arousal - arousal;
   return Math.sqrt(x * x + y * y);

@@ -13,8 +13,8 @@
  * @returns {[number, number, number, number]}
  */
 export function times(a, b) {
-  const [ax, ay, az, aw] = a;
-  const [bx, by, bz, bw] = b;
+  const { 0: ax, 1: ay, 2: az, 3: aw } = a;
+  const { 0: bx, 1: by, 2: bz, 3: bw } = b;
   return [
     aw * bx + ax * bw + ay * bz - az * by,
     aw * by - ax * bz + ay * bw + az * bx,
@@ -30,8 +30,8 @@ export function times(a, b) {
  * @returns {[number, number, number]}
  */
 export function rotated(q, v) {
-  const [x, y, z, w] = q;
-  const [vx, vy, vz] = v;
+  const { 0: x, 1: y, 2: z, 3: w } = q;
+  const { 0: vx, 1: vy, 2: vz } = v;
   const tx = 2 * (y * vz - z * vy);
   const ty = 2 * (z * vx - x * vz);
   const tz = 2 * (x * vy - y * vx);
@@ -45,8 +45,8 @@ export function rotated(q, v) {
  * @returns {[number, number, number, number]}
  */
 export function between(a, b) {
-  const [ax, ay, az] = a;
-  const [bx, by, bz] = b;
+  const { 0: ax, 1: ay, 2: az } = a;
+  const { 0: bx, 1: by, 2: bz } = b;
   const along = ax * bx + ay * by + az * bz;
   if (along < -0.999999999) { // half a turn about any axis across
     return unitTurn(Math.abs(ax) < 0.9 ? [0, az, -ay, 0] : [-az, 0, ax, 0]);
@@ -60,7 +60,7 @@ export function between(a, b) {
  * @returns {number}
  */
 export function length(v) {
-  const [x, y, z] = v;
+  const { 0: x, 1: y, 2: z } = v;
   return Math.sqrt(x * x + y * y + z * z);
 }
 
@@ -79,7 +79,7 @@ export function unit(v) {
  * @returns {[number, number, number, number]}
  */
 export function unitTurn(q) {
-  const [x, y, z, w] = q;
+  const { 0: x, 1: y, 2: z, 3: w } = q;
   const k = 1 / Math.max(Math.sqrt(x * x + y * y + z * z + w * w), 1e-12);
   return [x * k, y * k, z * k, w * k];
 }
@@ -90,7 +90,7 @@ export function unitTurn(q) {
  * @returns {[number, number, number, number]}
  */
 export function back(q) {
-  const [x, y, z, w] = q;
+  const { 0: x, 1: y, 2: z, 3: w } = q;
   return [-x, -y, -z, w];
 }
 
@@ -101,8 +101,8 @@ export function back(q) {
  * @returns {[number, number, number]}
  */
 export function plus(a, b) {
-  const [ax, ay, az] = a;
-  const [bx, by, bz] = b;
+  const { 0: ax, 1: ay, 2: az } = a;
+  const { 0: bx, 1: by, 2: bz } = b;
   return [ax + bx, ay + by, az + bz];
 }
 
@@ -113,8 +113,8 @@ export function plus(a, b) {
  * @returns {[number, number, number]}
  */
 export function minus(a, b) {
-  const [ax, ay, az] = a;
-  const [bx, by, bz] = b;
+  const { 0: ax, 1: ay, 2: az } = a;
+  const { 0: bx, 1: by, 2: bz } = b;
   return [ax - bx, ay - by, az - bz];
 }
 
@@ -125,7 +125,7 @@ export function minus(a, b) {
  * @returns {[number, number, number]}
  */
 export function scaled(a, k) {
-  const [x, y, z] = a;
+  const { 0: x, 1: y, 2: z } = a;
   return [x * k, y * k, z * k];
 }
 
@@ -136,7 +136,7 @@ export function scaled(a, k) {
  * @returns {number}
  */
 export function dot(a, b) {
-  const [ax, ay, az] = a;
-  const [bx, by, bz] = b;
+  const { 0: ax, 1: ay, 2: az } = a;
+  const { 0: bx, 1: by, 2: bz } = b;
   return ax * bx + ay * by + az * bz;
 }

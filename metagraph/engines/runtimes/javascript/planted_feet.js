@@ -199,8 +199,8 @@ function _stepped(height, before, after, first, last, passed, seconds) {
  * @returns {FootGoal}
  */
 function _mixed(a, b, x, air, share) {
-  const [ax, ay, az, aw] = a.turn;
-  const [bx, by, bz, bw] = b.turn;
+  const { 0: ax, 1: ay, 2: az, 3: aw } = a.turn;
+  const { 0: bx, 1: by, 2: bz, 3: bw } = b.turn;
   const k = ax * bx + ay * by + az * bz + aw * bw < 0 ? -x : x;
   const rest = 1 - x;
   const turn = unitTurn([ax * rest + bx * k, ay * rest + by * k, az * rest + bz * k, aw * rest + bw * k]);

@@ -14,6 +14,10 @@ import { multiply, nlerp, normalize, power } from "./rotation.js";
 import { Swaying } from "./weight.js";
 import { LAYERS } from "./words.js";
 
+// A clip is led while no joint is farther from the stance than the first, and crossfaded where one is farther than the second: cosines
+// of half that turn.
+const LEAD_WITHIN = 0.966;
+const FADE_BEYOND = 0.866;
 const UNSHOWN = new Float64Array(SHOWN.length);
 
 /** Room for working in, one for each graph: a pose is worked out whole before the next is begun. */
@@ -29,6 +33,7 @@ class Room {
     this.turn = new Float64Array(4);
     this.base = { rotations: Float64Array.from(graph.baseRotations), translations: Float64Array.from(graph.baseTranslations) };
     this.life = graph.body ? new Enlivener(graph) : null;
+    this.found = { player: null, plan: null, time: 0 }; // what `life` has found last
   }
 }
 
@@ -74,7 +79,7 @@ export class Player {
     this.compose(time);
     if (alive) this.weigh(time);
     if (alive && this.lives) {
-      life.find(pose.rotations, pose.translations, this.plan, this.gaze, time);
+      this.find(time);
       life.apply(pose.rotations, pose.translations);
     }
     if (this.graph.contactRig) touch(this.graph, this.playing(time), time, pose.rotations, pose.translations);
@@ -113,12 +118,21 @@ export class Player {
     return this.room.life.work(this.plan, time, cues);
   }
 
-  /** Find what the life layers do at a time, on the pose composed for it. */
+  /** Find what the life layers do at a time, on the pose composed for it; again only if a pose of that time has not just done so. */
   enliven(time) {
-    const { pose, life } = this.room;
+    const { found } = this.room;
+    if (found.player === this && found.plan === this.plan && found.time === time) return;
     this.compose(time); // eyes made of morph targets hold while the head moves
     this.weigh(time);
+    this.find(time);
+  }
+
+  find(time) {
+    const { pose, life, found } = this.room;
     life.find(pose.rotations, pose.translations, this.plan, this.gaze, time);
+    found.player = this;
+    found.plan = this.plan;
+    found.time = time;
   }
 
   /** Return what plays at a time: of each layer its name, plan, cue with motion or null, and the place of its rest. */
@@ -180,10 +194,8 @@ export class Player {
     this.stance(n, layer, time, count);
     if (blending && cue.repeats) mix(shown, stance, shown, cueWeight(cue, time), count); // at its ends it moves
     else if (blending) {
-      // Lead the clip in from, or out to, its stance: add what the stance differs from the clip's pose at that edge. A crossfade
-      // would hold the clip back and then hurry it.
       sample(action, entering ? cue.entry : clipSeconds(cue, cue.end), other, count);
-      this.lead(stance, 1 - cueWeight(cue, time), count);
+      this.blend(cueWeight(cue, time), count);
     }
     if (cue.extent !== 1) this.extend(cue.extent, this.graph.layers[LAYERS[n]], count);
     for (let s = 0; s < action.partly.length; s++) {
@@ -209,6 +221,25 @@ export class Player {
     sample(cue.action, cue.cycleFrom, other, count);
     sample(cue.action, cue.cycleTo, spare, count);
     this.lead(spare, left, count);
+  }
+
+  /**
+   * Blend what is shown in from, or out to, its stance; the clip's pose at that edge is the room's other. Where that is near the stance,
+   * lead the clip: add what the stance differs from it. A crossfade would hold the clip back and then hurry it. Where a joint has far to
+   * turn, crossfade: led, it would do its whole movement around a pose that the clip never has.
+   */
+  blend(weight, count) {
+    const { shown, stance, other, spare } = this.room;
+    let near = 1;
+    for (let q = 0; q < 4 * count; q += 4) {
+      let along = 0;
+      for (let k = q; k < q + 4; k++) along += other.rotations[k] * stance.rotations[k];
+      near = Math.min(near, Math.abs(along));
+    }
+    const far = ease((LEAD_WITHIN - near) / (LEAD_WITHIN - FADE_BEYOND));
+    if (far > 0) mix(spare, stance, shown, weight, count);
+    this.lead(stance, 1 - weight, count);
+    if (far > 0) mix(shown, shown, spare, far, count);
   }
 
   /** Add to what is shown a part of the way from the room's other pose to a pose. */

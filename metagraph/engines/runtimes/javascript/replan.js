@@ -55,8 +55,8 @@ export function delay(asked, free, settings) {
  */
 export function replan(metas, settings, busy = -Infinity) {
   const every = [...metas];
-  const [placed, reports] = _placed(every.filter((m) => !m.written), settings);
-  const [written, told] = _fitted(every.filter((m) => m.written), placed, settings.shortest, busy);
+  const { 0: placed, 1: reports } = _placed(every.filter((m) => !m.written), settings);
+  const { 0: written, 1: told } = _fitted(every.filter((m) => m.written), placed, settings.shortest, busy);
   return [sortedBy([...placed, ...written], (m) => [m.start, m.end]), [...reports, ...told]];
 }
 

@@ -676,7 +676,7 @@ export class Performer {
   /** Return when the stance was last changed; minus infinity for never. */
   moved() {
     let latest = -Infinity;
-    for (const [ident, end] of this.ended) {
+    for (const { 0: ident, 1: end } of this.ended) {
       const action = this.graph.actions.get(ident) ?? null;
       if (action !== null && action.kind === "transition") {
         latest = Math.max(latest, end);
@@ -687,7 +687,7 @@ export class Performer {
 
   /** Return whether an act that stands out was done since a time. */
   shown(since) {
-    for (const [ident, end] of this.ended) {
+    for (const { 0: ident, 1: end } of this.ended) {
       const action = this.graph.actions.get(ident) ?? null;
       if (action === null || action.kind === "transition" || end < since) {
         continue;
@@ -741,7 +741,7 @@ export class Performer {
     let length = shape.length;
     let into = Math.max(0, action.timing.blendIn);
     let out = Math.max(0, action.timing.blendOut);
-    const [begin, until] = this.project.span(action);
+    const { 0: begin, 1: until } = this.project.span(action);
     const cycle = cycleOf(action.kind, action.timing, begin, until);
     if (action.timing.earliestExit !== null || cycle > 0) {
       const wish = hops ? Infinity : bound.wish;
@@ -817,7 +817,7 @@ export class Performer {
   /** Change between the loops of a stance in long rests, at the end of a loop. */
   varyRests(end) {
     const out = [];
-    for (const [place, rest] of this.rests.entries()) {
+    for (const { 0: place, 1: rest } of this.rests.entries()) {
       out.push(rest);
       const loops = this.graph.of(rest.stance, "stance");
       if (loops.length < 2) {
@@ -827,7 +827,7 @@ export class Performer {
       let current = rest;
       let change = rest.start;
       while (true) {
-        const [start, stop] = this.project.span(current.action);
+        const { 0: start, 1: stop } = this.project.span(current.action);
         change += Math.max(1, stop - start - current.action.timing.blendIn);
         if (!(change <= until)) { // nor when it is no number
           break;

@@ -106,7 +106,7 @@ export class Schedule {
     const lanes = [breaths, aversions, saccades, blinks];
     const firsts = lanes.filter((kept) => kept.times.length > 0).map((kept) => kept.times[0]);
     let needed = firsts.length > 0 ? minOf(firsts) : seconds;
-    if (zip(lanes, rates).some(([kept, rate]) => kept.times.length === 0 && rate > 0)) {
+    if (zip(lanes, rates).some(({ 0: kept, 1: rate }) => kept.times.length === 0 && rate > 0)) {
       needed = 0;
     }
     const looked = bisectRight(this.targets.map((t) => t.start), Math.min(needed, seconds - RECALL)) - 1;
@@ -248,7 +248,7 @@ export class LifeDraw {
     this.phrases = sorted([...this.track.speeches.map((speech) => speech.start), ...talks]);
     const edges = [...this.modes.times];
     edges.push(...this.moods.times);
-    for (const [n, target] of this.targets.entries()) {
+    for (const { 0: n, 1: target } of this.targets.entries()) {
       if (n === 0 || target.strict !== this.targets[n - 1].strict) {
         edges.push(target.start);
       }
@@ -391,7 +391,7 @@ export class LifeDraw {
       return lane;
     }
     const rates = [];
-    for (const [ways, strict] of zip(this.manners, this.strict)) {
+    for (const { 0: ways, 1: strict } of zip(this.manners, this.strict)) {
       const rate = life.aversionRate * ways.aversionRate;
       if (strict === 1 || rate <= 0) {
         rates.push(0);
@@ -454,7 +454,7 @@ export class LifeDraw {
       // A stressed syllable may bring a blink: the first of a speech always, the others some time after
       // the last blink.
       while (place < accents.length) {
-        const [accent, first] = accents[place];
+        const { 0: accent, 1: first } = accents[place];
         if (accent >= this.cut && accent >= last + (first ? shut + 0.1 : AFTER_BLINK / this.calm)) {
           break;
         }
@@ -483,7 +483,7 @@ export class LifeDraw {
         continue;
       }
       const end = Math.min(speech.end, this.drawn);
-      for (const [n, peak] of stressed(this.voices, speech).entries()) {
+      for (const { 0: n, 1: peak } of stressed(this.voices, speech).entries()) {
         const at = findLineStart(speech) + peak;
         if (at < Math.max(start, speech.start) || at >= end) {
           continue;
@@ -513,7 +513,7 @@ function _draw(life, track, voices, seed, cut, drawn, before) {
   const last = modes.rows.length > 0 ? Math.trunc(modes.rows[modes.rows.length - 1][0]) : -1;
   const times = [];
   const rows = [];
-  for (const [at, mode] of modesBetween(track, cut, drawn)) {
+  for (const { 0: at, 1: mode } of modesBetween(track, cut, drawn)) {
     if (times.length > 0 || mode !== last) {
       times.push(at);
       rows.push([mode]);
@@ -526,7 +526,7 @@ function _draw(life, track, voices, seed, cut, drawn, before) {
   }
   const changes = [];
   const wanted = [];
-  for (const [at, mood] of moodsBetween(moodsOf(life, track), cut, drawn)) {
+  for (const { 0: at, 1: mood } of moodsBetween(moodsOf(life, track), cut, drawn)) {
     const same = felt.length > 0 && felt[0] === mood.valence && felt[1] === mood.arousal && felt[2] === mood.intensity;
     if (changes.length > 0 || !same) {
       changes.push(at);

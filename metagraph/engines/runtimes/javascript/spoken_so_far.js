@@ -23,8 +23,8 @@ export function spokenUntil(alphabet, said, ident, seconds) {
   let last = "";
   let paced = false;
   const pieces = _pieces(said, ident, seconds);
-  for (const [n, piece] of pieces.entries()) {
-    const [words, word] = _spokenOf(alphabet, piece, Math.min(seconds, piece.end) - findLineStart(piece));
+  for (const { 0: n, 1: piece } of pieces.entries()) {
+    const { 0: words, 1: word } = _spokenOf(alphabet, piece, Math.min(seconds, piece.end) - findLineStart(piece));
     const joins = paced && piece.timing !== null && piece.timing.paced;
     if (n > 0 && text !== "" && words !== "" && !joins) {
       text += " ";
@@ -120,7 +120,7 @@ function _parts(alphabet, letter) {
  */
 function _endOfLetters(letters, word, first) {
   for (let start = first; start < letters.length - word.length + 1; start++) {
-    if ([...word.entries()].every(([n, letter]) => letters[start + n] === letter)) {
+    if ([...word.entries()].every(({ 0: n, 1: letter }) => letters[start + n] === letter)) {
       return start + word.length;
     }
   }

@@ -110,7 +110,7 @@ export class StreamedVoice {
   }
 
   begin() {
-    for (const [hertz, quality] of zip(HERTZ, QUALITY)) {
+    for (const { 0: hertz, 1: quality } of zip(HERTZ, QUALITY)) {
       if (hertz <= HIGHEST * this.rate) {
         const turn = 2 * Math.PI * hertz / this.rate;
         const wide = Math.sin(turn) / (2 * quality);

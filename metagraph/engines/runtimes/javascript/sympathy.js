@@ -76,7 +76,7 @@ export function moodsTakenUp(own, other, end, share, seed, who) {
   }
   edges = sorted(edges);
   const out = [];
-  for (const [n, edge] of edges.entries()) {
+  for (const { 0: n, 1: edge } of edges.entries()) {
     const until = n + 1 < edges.length ? edges[n + 1] : end;
     const mine = moodAt(own, edge);
     const mood = takenUp(mine, moodAt(other, edge), share);
@@ -101,7 +101,7 @@ export function moodsTakenUp(own, other, end, share, seed, who) {
  */
 export function laughsAlong(own, laughs, share, seed, who) {
   const out = [];
-  for (const [n, laugh] of laughs.entries()) {
+  for (const { 0: n, 1: laugh } of laughs.entries()) {
     if (uniform(seed, who, String(n), "laugh") >= share) {
       continue;
     }

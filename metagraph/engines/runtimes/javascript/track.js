@@ -130,18 +130,23 @@ export class Track {
       looks.push(look);
     }
     const latest = new Map(this.speeches.map((x) => [x.id, x]));
-    const lasts = new Set([...latest].filter(([ident, x]) => x.more || x.end > seconds).map(([ident, x]) => ident));
+    const lasts = new Set([...latest].filter(({ 0: ident, 1: x }) => x.more || x.end > seconds).map(({ 0: ident, 1: x }) =>
+      ident));
     const mode = Math.max(0, bisectRight(this.modes.map((m) => m.start), seconds) - 1);
-    const places = new Map([...this.places.entries()].filter(([n, x]) => x.start <= seconds).map(([n, x]) => [x.name, n]));
-    const stays = new Map([...this.stays.entries()].filter(([n, x]) => x.start <= seconds).map(([n, x]) => [x.layer, n]));
+    const places = new Map([...this.places.entries()].filter(({ 0: n, 1: x }) => x.start <= seconds).map(({ 0: n, 1: x }) =>
+      [x.name, n]));
+    const stays = new Map([...this.stays.entries()].filter(({ 0: n, 1: x }) => x.start <= seconds).map(({ 0: n, 1: x }) =>
+      [x.layer, n]));
     return new Track(
       [...looks],
       this.speeches.filter((x) =>
         x.start > seconds || x.end > seconds || (x.more && lasts.has(x.id)) || (x.over !== null && x.over > seconds)),
       this.modes.slice(mode),
-      [...this.places.entries()].filter(([n, x]) => x.start > seconds || places.get(x.name) === n).map(([n, x]) => x),
+      [...this.places.entries()].filter(({ 0: n, 1: x }) => x.start > seconds || places.get(x.name) === n).map(({ 0: n, 1: x }) =>
+        x),
       this.blinks.filter((x) => x.start > seconds),
-      [...this.stays.entries()].filter(([n, x]) => x.start > seconds || stays.get(x.layer) === n).map(([n, x]) => x),
+      [...this.stays.entries()].filter(({ 0: n, 1: x }) => x.start > seconds || stays.get(x.layer) === n).map(({ 0: n, 1: x }) =>
+        x),
       [...lasting(this.moods, seconds)],
     );
   }

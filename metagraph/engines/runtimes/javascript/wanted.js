@@ -132,7 +132,8 @@ export function waysIn(ways, mood) {
 export function targetsBetween(track, start, end) {
   let changes = track.looks.map((x, n) => [x.start, LOOK, n]);
   changes.push(...track.looks.map((x, n) => [x.end, OVER, n]));
-  changes.push(...[...track.places.entries()].filter(([n, p]) => p.start >= start).map(([n, p]) => [p.start, PLACE, n]));
+  changes.push(...[...track.places.entries()].filter(({ 0: n, 1: p }) => p.start >= start).map(({ 0: n, 1: p }) =>
+    [p.start, PLACE, n]));
   changes.push([start, BEGIN, 0]);
   changes = sortedBy(changes, (c) => [c[0], c[1]]);
   let looks = []; // indices of looks, the most important first; the others are older or less important
@@ -146,7 +147,7 @@ export function targetsBetween(track, start, end) {
   let since = 0;
   const out = [];
   for (let n = 0; n < changes.length; n++) {
-    const [at, kind, which] = changes[n];
+    const { 0: at, 1: kind, 2: which } = changes[n];
     if (at >= end) {
       break;
     }

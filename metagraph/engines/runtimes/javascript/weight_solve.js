@@ -156,8 +156,8 @@ function _giveWay(rig, pose, drive, follow) {
   const vy = drive[9] + drive[12];
   const vz = drive[10] + drive[13];
   let spin = 0;
-  for (const [side, lever] of rig.levers.entries()) {
-    const [lx, lz] = lever;
+  for (const { 0: side, 1: lever } of rig.levers.entries()) {
+    const { 0: lx, 1: lz } = lever;
     spin += lz * drive[8 + 3 * side] - lx * drive[10 + 3 * side];
   }
   const most = MOST_SHIFT * rig.height;
@@ -244,7 +244,7 @@ function _soft(x, most) {
  * @returns {[number, number, number, number]}
  */
 function _turn(axis, angle) {
-  const [x, y, z] = axis;
+  const { 0: x, 1: y, 2: z } = axis;
   const size = length(axis);
   if (size <= 0) {
     return [0, 0, 0, 1];

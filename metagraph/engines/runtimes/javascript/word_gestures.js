@@ -254,9 +254,9 @@ export function proposedFor(words, arms, head, lexicon, small, seed) {
   const every = [];
   let clause = [];
   let proposes = false;
-  for (const [n, word] of words.entries()) {
+  for (const { 0: n, 1: word } of words.entries()) {
     clause.push(word);
-    const [rule, length] = _fitting(lexicon, words, n);
+    const { 0: rule, 1: length } = _fitting(lexicon, words, n);
     if (length > 0) {
       every.push(..._of(rule, words[n + length - 1], arms, head));
       proposes = true;
@@ -313,7 +313,7 @@ function _says(words, first, parts) {
   if (first + parts.length > words.length) {
     return false;
   }
-  for (const [k, part] of parts.entries()) {
+  for (const { 0: k, 1: part } of parts.entries()) {
     if (words[first + k].plain !== part || (k + 1 < parts.length && words[first + k].mark !== "")) {
       return false;
     }
@@ -406,7 +406,7 @@ export function gestureAsks(every, at) {
  */
 export function sentenceEnd(alphabet, letters, over) {
   let some = false;
-  for (const [n, letter] of letters.entries()) {
+  for (const { 0: n, 1: letter } of letters.entries()) {
     const blank = alphabet.stripped(letter) === "";
     if (letter === "\n" && some) {
       return n + 1;

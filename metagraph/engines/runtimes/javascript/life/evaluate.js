@@ -125,7 +125,9 @@ export class Enlivener {
     let place = chained;
     for (let n = 0; n < body.shoulders.length; n++) {
       const { turn, tense, closed } = body.shoulders[n];
-      const [x, y, z] = [0, 1, 2].map((k) => full * turn[k] + tight * tense[k] + close * closed[k]);
+      const x = full * turn[0] + tight * tense[0] + close * closed[0];
+      const y = full * turn[1] + tight * tense[1] + close * closed[1];
+      const z = full * turn[2] + tight * tense[2] + close * closed[2];
       this.add(place++, x, y, z);
     }
     for (let n = 0; n < 2; n++) {

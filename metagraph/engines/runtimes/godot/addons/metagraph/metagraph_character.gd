@@ -17,9 +17,12 @@ const Talk = preload("core/talk.gd")
 const Bones = preload("core/bones.gd")
 const Shim = preload("core/shim4.gd")
 
+## The exported JSON. A path without res:// leads from the folder of the scene.
 @export_file("*.json") var json_path := ""
-## A copy of the export's GLB under a name that Godot does not import, so that it is there in an exported game.
-@export_file var glb_path := ""
+## The export's file .motion: its GLB under a name that Godot does not import, so that it is there in an exported game. Empty: the one
+## beside the JSON.
+@export_file("*.motion") var glb_path := ""
+## Empty: the first Skeleton3D below this node's parent.
 @export var skeleton_path: NodePath
 ## Chance: the same seed and requests give the same performance. -1: the project's.
 @export var chance := -1
@@ -43,10 +46,11 @@ var _seconds := 0.0
 
 
 func _ready() -> void:
-	if not skeleton_path.is_empty():
-		_skeleton = get_node_or_null(skeleton_path) as Skeleton3D
+	_skeleton = _find_skeleton()
 	if graph == null:
-		graph = Graph.new(Shim.text_of(Shim.read_bytes(json_path)), Shim.read_bytes(glb_path))
+		var json := _place(json_path)
+		var motion := json.get_basename() + ".motion" if glb_path.is_empty() else _place(glb_path)
+		graph = Graph.new(Shim.text_of(Shim.read_bytes(json)), Shim.read_bytes(motion))
 	if graph.error != "":
 		push_error("Metagraph: %s: %s" % [json_path, graph.error])
 		return
@@ -58,7 +62,7 @@ func _ready() -> void:
 	character = Performer.new(graph, options)
 	talk = Talk.new(character, {"language": language, "seed": chance if chance >= 0 else 1, "name": "said#"})
 	if _skeleton == null:
-		push_error("Metagraph: skeleton_path leads to no Skeleton3D; only requests and events are worked out")
+		push_error("Metagraph: there is no Skeleton3D (skeleton_path); only requests and events are worked out")
 		return
 	var names := []
 	for bone in _skeleton.get_bone_count():
@@ -73,6 +77,20 @@ func _ready() -> void:
 			for place in mesh.get_blend_shape_count():
 				targets.append(str(mesh.get_blend_shape_name(place)))
 			_faces.append([node, targets])
+
+
+func _find_skeleton() -> Skeleton3D:
+	if not skeleton_path.is_empty():
+		return get_node_or_null(skeleton_path) as Skeleton3D
+	var found := get_parent().find_children("*", "Skeleton3D", true, false)
+	return found[0] as Skeleton3D if not found.is_empty() else null
+
+
+func _place(path: String) -> String:
+	if path.is_empty() or path.is_absolute_path():
+		return path
+	var folder := owner.scene_file_path.get_base_dir() if owner != null else ""
+	return (folder if not folder.is_empty() else "res://").path_join(path)
 
 
 func _process(delta: float) -> void:

@@ -138,11 +138,7 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 			if not meta.written:
 				reports.append(MetaPlan.Report.new(meta.request.id, "no-stance", why, layer, meta.start))
 		return LayerDraft.new(layer, performer, false, done, waits, reports, old.past, cursor, written)
-	var found = {}
-	for cue in kept:
-		if waiting.has(cue.meta):
-			Util.add_to(found, cue.meta)
-	performer.begun = found
+	performer.begun = _begun(old, kept.size())
 	if kept.size() > 0 and kept[-1].end > now:
 		var first = null
 		for meta3 in old.metas:
@@ -155,11 +151,11 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 		var begun = {}
 		for cue in performer.cues:
 			Util.add_to(begun, cue.end - cue.blend_out)
-		var found2 = []
+		var found = []
 		for rest in old.rests:
 			if rest.fade_start < now or begun.has(rest.start):
-				found2.append(rest)
-		performer.rests = found2
+				found.append(rest)
+		performer.rests = found
 	performer.free_ = Util.most(now - (performer.ready() - performer.free_), performer.free_)
 	var delayed
 	var both2 = Replan.delay(asked, performer.ready(), project.settings)
@@ -174,6 +170,18 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 	var moved = both3[1]
 	var every = reports + delayed + moved
 	return LayerDraft.new(layer, performer, true, done, placed, every, old.past, cursor, written)
+
+
+# Return the key of the meta action whose chain of transitions plays where the first cues are kept; none if none does. An earlier
+# action may have had the same key, so that only the last cue can be of a chain.
+static func _begun(old, kept):
+	var out = {}
+	if 0 < kept and kept < old.cues.size():
+		var last = old.cues[kept - 1]
+		var following = old.cues[kept]
+		if last.meta == following.meta and following.start <= last.end:
+			Util.add_to(out, last.meta)
+	return out
 
 
 # Return a request that may begin earlier, by the extra time that its preparation takes in its mood.

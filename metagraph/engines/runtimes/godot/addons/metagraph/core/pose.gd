@@ -9,6 +9,11 @@ const Contacts = preload("contacts.gd")
 const Weight = preload("weight.gd")
 const CueTimes = preload("cue_times.gd")
 
+# A clip is led while no joint is farther from the stance than the first, and crossfaded where one is farther than the second: cosines
+# of half that turn.
+const LEAD_WITHIN = 0.966
+const FADE_BEYOND = 0.866
+
 
 # Returns {rotations [J] local quaternions, translations [J] local, metres, morphs {name: weight 0..1}} at a time. alive: with the life
 # layers, as far as the export has them on. Actions whose clip is missing show their stance.
@@ -136,9 +141,8 @@ static func _layer(graph, plan, time):
 	if blending and cue.repeats:  # at its ends it moves
 		out = _mix(stance, shown, cue_weight(cue, time))
 	elif blending:
-		# What the stance differs from the clip's pose at that edge is added, so that the clip keeps its own speed.
 		var edge = _sample(clip, cue.entry if entering else clip_seconds(cue, cue.end))
-		out = _lead(graph, plan, shown, edge, stance, 1.0 - cue_weight(cue, time))
+		out = _blend(graph, plan, shown, edge, stance, cue_weight(cue, time))
 	if cue.extent != 1:
 		_extend(graph, plan.layer, out, stance, cue.extent)
 	if partly != null:
@@ -148,6 +152,18 @@ static func _layer(graph, plan, time):
 				var rest = stance.shifts.get(joint, Vector3())
 				out.shifts[joint] = rest + (out.shifts.get(joint, Vector3()) - rest) * partly[joint]
 	return out
+
+
+# Returns what is shown, blended in from or out to its stance; edge is the clip's pose there. Where that is near the
+# stance, what the stance differs from it is added, so that the clip keeps its own speed. Where a joint has far to turn,
+# they are crossfaded: it would do its whole movement around a pose that the clip never has.
+static func _blend(graph, plan, shown, edge, stance, weight):
+	var near = 1.0
+	for each in graph.layers[plan.layer].reach:
+		near = Util.least(near, abs(edge.turns[each[0]].dot(stance.turns[each[0]])))
+	var far = Util.smooth((LEAD_WITHIN - near) / (LEAD_WITHIN - FADE_BEYOND))
+	var led = _lead(graph, plan, shown, edge, stance, 1.0 - weight)
+	return _mix(led, _mix(stance, shown, weight), far) if far > 0.0 else led
 
 
 # Returns what is shown with a part of the way from a pose to another added.

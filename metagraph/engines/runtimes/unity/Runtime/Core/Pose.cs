@@ -57,6 +57,10 @@ namespace Metagraph
         private readonly Enliven life;
         private readonly Contacts contacts;
         private readonly Weight weight;
+        // A clip is led while no joint is farther from the stance than the first, and crossfaded where one is farther than the second:
+        // cosines of half that turn.
+        private const double LeadWithin = 0.966, FadeBeyond = 0.866;
+
         private readonly Quat[] composed;
         private readonly Vec[] places;
         private readonly Sample shown, stance, edge, before, seam;
@@ -136,10 +140,7 @@ namespace Metagraph
             }
         }
 
-        /// <summary>
-        /// A layer's offsets at a time. What a blend leaves over of its cue is no crossfade, which would hold the clip back and then
-        /// hurry it: it is what the stance differs from the clip's pose at that edge, added to the clip.
-        /// </summary>
+        /// <summary>A layer's offsets at a time.</summary>
         private Sample LayerAt(LayerPlan plan, int[] reach, double time)
         {
             Cue cue = plan.CueAt(time);
@@ -164,7 +165,7 @@ namespace Metagraph
             else if (entering || leaving)
             {
                 Show(motion, entering ? cue.Entry : cue.ClipSeconds(cue.End), reach, edge);
-                Lead(edge, stance, 1 - cue.Weight(time), reach);
+                Blend(cue.Weight(time), reach);
             }
             if (cue.Extent != 1)
             {
@@ -193,6 +194,30 @@ namespace Metagraph
                 Show(motion, cue.CycleFrom, reach, edge);
                 Show(motion, cue.CycleTo, reach, seam);
                 Lead(edge, seam, left, reach);
+            }
+        }
+
+        /// <summary>
+        /// Blend what is shown in from, or out to, its stance. Where the clip's pose at that edge is near the stance, lead the clip:
+        /// add what the stance differs from it. A crossfade would hold the clip back and then hurry it. Where a joint has far to
+        /// turn, crossfade: led, it would do its whole movement around a pose that the clip never has.
+        /// </summary>
+        private void Blend(double weight, int[] reach)
+        {
+            double near = 1;
+            foreach (int j in reach)
+            {
+                near = Math.Min(near, Math.Abs(Quat.Dot(edge.Turns[j], stance.Turns[j])));
+            }
+            double far = Basics.Ease((LeadWithin - near) / (LeadWithin - FadeBeyond));
+            if (far > 0)
+            {
+                Mix(stance, shown, weight, reach, seam);
+            }
+            Lead(edge, stance, 1 - weight, reach);
+            if (far > 0)
+            {
+                Mix(shown, seam, far, reach, shown);
             }
         }
 

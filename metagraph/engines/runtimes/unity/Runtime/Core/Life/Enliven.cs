@@ -199,9 +199,9 @@ namespace Metagraph
                 int joint = body.Chain[n];
                 chain[n] = Quat.Of(rotations, joint);
                 places[n] = new Vec(translations[3 * joint], translations[3 * joint + 1], translations[3 * joint + 2]);
-                if (body.Angles[n] != 0 && (full != 0 || bears.Droop != 0 || bears.Thrust != 0))
+                double angle = full * body.Angles[n] + bears.Droop * body.Bowed[n] + bears.Thrust * body.Thrust[n];
+                if (angle != 0)
                 {
-                    double angle = full * body.Angles[n] + bears.Droop * body.Bowed[n] + bears.Thrust * body.Thrust[n];
                     chain[n] *= Quat.About(body.Breath[n], angle);
                 }
             }

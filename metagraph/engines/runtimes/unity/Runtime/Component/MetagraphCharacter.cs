@@ -21,7 +21,7 @@ namespace Metagraph
 
         [Tooltip("The exported JSON")]
         public TextAsset export;
-        [Tooltip("The exported GLB, renamed to end in .glb.bytes")]
+        [Tooltip("The export's file .glb.bytes")]
         public TextAsset glb;
         [Tooltip("Or its path below StreamingAssets (not on Android and the web, where these are no files)")]
         public string glbPath = "";

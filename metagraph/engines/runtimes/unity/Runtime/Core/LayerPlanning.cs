@@ -164,7 +164,7 @@ namespace Metagraph
                 }
                 return new LayerDraft(layer, performer, false, done, waits, reports, old.Past, cursor, written);
             }
-            performer.Begun = new HashSet<string>(kept.Where(cue => waiting.Contains(cue.Meta)).Select(cue => cue.Meta));
+            performer.Begun = Begun(old, kept.Count);
             if (kept.Count > 0 && kept[kept.Count - 1].End > now)
             {
                 var running = old.Metas.Where(meta => meta.Key == kept[kept.Count - 1].Meta).FirstOrDefault();
@@ -193,6 +193,25 @@ namespace Metagraph
             List<Report> moved = found3.Item2;
             var every = reports.Concat(delayed).Concat(moved).ToList();
             return new LayerDraft(layer, performer, true, done, placed, every, old.Past, cursor, written);
+        }
+
+        /// <summary>
+        /// Return the key of the meta action whose chain of transitions plays where the first cues are kept; none if none does.
+        /// An earlier action may have had the same key, so that only the last cue can be of a chain.
+        /// </summary>
+        private static HashSet<string> Begun(LayerPlan old, int kept)
+        {
+            var out_ = new HashSet<string>();
+            if (0 < kept && kept < old.Cues.Count)
+            {
+                var last = old.Cues[kept - 1];
+                var following = old.Cues[kept];
+                if (last.Meta == following.Meta && following.Start <= last.End)
+                {
+                    out_.Add(last.Meta);
+                }
+            }
+            return out_;
         }
 
         /// <summary>
