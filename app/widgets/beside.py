@@ -29,8 +29,9 @@ def find_free_place(size: tuple[int, int], least: tuple[int, int], room: QRect, 
     height = max(least[1], min(size[1], best.height()))
     out = QRect(0, 0, width, height)
     out.moveCenter(best.center())
-    out.moveLeft(max(room.left(), min(out.left(), best.left() + max(0, best.width() - width))))
-    out.moveTop(max(room.top(), min(out.top(), best.top() + max(0, best.height() - height))))
+    left, top = best.left() + max(0, best.width() - width), best.top() + max(0, best.height() - height)
+    out.moveLeft(max(room.left(), min(out.left(), left, room.left() + room.width() - width)))
+    out.moveTop(max(room.top(), min(out.top(), top, room.top() + room.height() - height)))
     return out
 
 

@@ -25,8 +25,8 @@ from metagraph.errors import FileError
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
 # Where READMEs find requests here; an export carries them along.
-REQUESTS = re.compile(r"(?:\.\./)+docs/agents/requests\.md")
-SPEECH = re.compile(r"(?:\.\./)+docs/agents/speech\.md")
+REQUESTS = re.compile(r"(?:\.\./)+" + re.escape("docs/agents/requests.md"))
+SPEECH = re.compile(r"(?:\.\./)+" + re.escape("docs/agents/speech.md"))
 BML = Loss(phrase("only the desktop app reads requests in Behaviour Markup Language"))
 
 
