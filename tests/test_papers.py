@@ -167,6 +167,12 @@ def test_every_value_is_the_codes_and_the_papers_where_it_is_called_the_same(pap
 
 
 @EVERY
+def test_what_is_called_the_same_or_better_than_a_number_has_a_number_that_is_computed(paper: str) -> None:
+    lacking = [row for row in of(paper) if row.verdict in ("same", "better") and row.there]
+    assert not [row for row in lacking if not VALUE.search(row.here)]
+
+
+@EVERY
 def test_the_numbers_told_of_a_paper_stand_in_it(paper: str) -> None:
     path = GIVEN / PAPERS[paper]
     if not path.is_file():

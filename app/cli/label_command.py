@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from app.cli.outputs import ProjectOutput
+    from metagraph.graph.editing.one_sided import OneSided
     from metagraph.graph.model import Project
     from metagraph.graph.problem import Problem
     from metagraph.suggest.alike import LabelledExample
@@ -75,6 +76,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="play the result for this many seconds and each action once, and report visible faults; 0 "
         "skips this (default: 60)",
     )
+    parser.add_argument(
+        "--twins",
+        action="store_true",
+        help="where only one arm has gestures or fidgets in a stance, add mirrored twins for the other",
+    )
     parser.add_argument("--no-pictures", action="store_true", help="write the report without pictures")
 
 
@@ -118,6 +124,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.import_words import count_alike
     from metagraph.graph.check import check_project, list_grave_problems
+    from metagraph.graph.editing.one_sided import describe_one_sided, list_one_sided
     from metagraph.suggest.flags import needs_look
     from metagraph.suggest.jumps.bridges import describe_bridges, describe_unbridged
     from metagraph.suggest.left_aside import group_reasons
@@ -137,6 +144,9 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     )
     taken = accept(project, found, options.above)
     labelled, bridges = join_labelled(begun.before, taken.project, not options.no_bridges)
+    one_sided = list_one_sided(labelled)
+    if options.twins:
+        labelled = add_twins(labelled, one_sided, path.resolve().parent)
     taken = replace(taken, project=labelled)
     if not begun.merged or labelled != begun.before:
         output.save(taken.project, source if source.is_file() else None)
@@ -150,6 +160,9 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
             "Seen when it was played": [p.message for p in seen],
             "Blended, because no clip leads there": describe_bridges(taken.project, bridges),
             "Not joined to the other stances": gaps,
+            "Mirrored for the other arm" if options.twins else "Only one arm": [
+                describe_one_sided(one) for one in one_sided
+            ],
             "While importing": count_alike(notes),
         }
         drawn = (
@@ -170,6 +183,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         print(f"bridged: {line}", file=sys.stderr)
     for line in gaps:
         print(f"no bridge: {line}", file=sys.stderr)
+    _tell_one_sided(one_sided, options.twins)
     for why, clips in group_reasons(found.aside):
         print(f"skipped: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
     for why, clips in group_reasons(taken.left):
@@ -194,6 +208,8 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         },
         "bridged": describe_bridges(taken.project, bridges),
         "no bridge": gaps,
+        "one arm": {one.name: {"lacks": one.lacks, "actions": len(one.actions)} for one in one_sided},
+        "twins": _count_lacking(one_sided) if options.twins else 0,
         "aside": {project.clips[c].name: why for c, why in found.aside.items()},
         "look": [names[p.clip] for p in look],
         "errors": errors,
@@ -205,6 +221,36 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         words, data = f"{words}\n{told_of}", data | data_of
     say(options, words, data)
     return _exit_code(len(taken.left), len(errors), len(faults))
+
+
+def _count_lacking(one_sided: Sequence[OneSided]) -> int:
+    return sum(len(one.actions) for one in one_sided)
+
+
+def _tell_one_sided(one_sided: Sequence[OneSided], mirrored: bool) -> None:
+    from metagraph.graph.editing.one_sided import describe_one_sided
+
+    for one in one_sided:
+        print(f"{'mirrored' if mirrored else 'one arm'}: {describe_one_sided(one)}", file=sys.stderr)
+    if one_sided and not mirrored:
+        count = _count_lacking(one_sided)
+        print(f"note: --twins adds {count} mirrored clips for the other arm", file=sys.stderr)
+
+
+def add_twins(project: Project, one_sided: Sequence[OneSided], folder: Path) -> Project:
+    """Return a project with twins of what one arm alone has, whose clips are written below its folder. What
+    has no side, or no motion, gets none.
+    """
+    from app.features.twins.mirrored_twins import with_twins, write_twin
+    from metagraph.graph.edit_error import EditError
+    from metagraph.graph.editing.mirroring import make_twin_clips
+
+    made = []
+    for one in one_sided:
+        for action in one.actions:
+            with suppress(EditError):
+                made += [(twin, write_twin(twin, folder)) for twin in make_twin_clips(project, [action])]
+    return with_twins(project, made) if made else project
 
 
 def _rehearse(options: Namespace, project: Project) -> list[Problem]:

@@ -36,7 +36,7 @@ NEVER = (("generate", "train"), ("generate", "planted"), ("study", "simulate"))
 # Commands whose output is a project, which they claim themselves: it may be the one they read.
 PROJECTS = ("label", "contacts", "merge")
 # Actions that change a study's folder in place, with rules of their own for what is there.
-STUDIES = ("run", "freeze", "withdraw", "delete", "import", "plan", "collect", "serve")
+STUDIES = ("run", "pilot", "freeze", "withdraw", "delete", "import", "plan", "collect", "serve")
 OVERWRITE = "also replace files that this command did not write, or that someone changed since"
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
+from app.cli.perceive_mismatched import add_arguments as mismatched_arguments
 from app.cli.perceive_planning import add_arguments as planning_arguments
 from app.cli.perceive_planning import require_empty
 from app.cli.progress_line import ProgressLine
@@ -55,6 +56,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     _study(told)
     told.add_argument("--out", type=Path, help="where to write it (default: report, in the study's folder)")
     planning_arguments(action)
+    mismatched_arguments(action, make_perceptual_study)
     gone = action(
         "withdraw",
         "withdraw a participant: leave the answers out of all reports from now on",

@@ -147,6 +147,7 @@ class Stimuli:
             shown, folder = self._performance(made)
         else:
             shown, folder = self._motion(name, made, item)
+        shown = make_face_still(shown) if made.face == "still" else shown
         if shown.skeleton is None:
             raise self._failure(name, "its project has no clips to draw")
         start = item.start if made.conversation is not None or not apart else 0.0
@@ -286,6 +287,13 @@ def replace_struct(value: Any, **fields: Any) -> Any:
     from msgspec.structs import replace as changed
 
     return changed(value, **fields)
+
+
+def make_face_still(shown: ShownPlayback) -> ShownPlayback:
+    """Return the same with faces that do not follow speech, of all who are seen."""
+    still = {"lips": 0.0, "expressions": 0.0, "accent_brows": 0.0, "accent_blinks": 0.0}
+    project = replace(shown.project, life=replace_struct(shown.project.life, **still))
+    return replace(shown, project=project, others=tuple(make_face_still(one) for one in shown.others))
 
 
 def with_clip(project: Project, ident: str, clip: Clip) -> Project:

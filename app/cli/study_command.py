@@ -14,6 +14,7 @@ from app.cli.perceive_command import add_arguments as perceive_arguments
 from app.cli.progress_line import ProgressLine
 from app.cli.study_agreement import add_arguments as agreement_arguments
 from app.cli.study_people import add_arguments as people_arguments
+from app.cli.study_pilot import add_pilot_arguments, run_pilot
 from app.cli.study_planning import add_arguments as plan_arguments
 from app.cli.study_replaying import add_arguments as replay_arguments
 from app.cli.study_run import check_arguments, run_arguments
@@ -45,6 +46,9 @@ def add_arguments(parser: ArgumentParser) -> None:
         )
 
     run_arguments(action("run", "guide a participant through a sitting, in the window", run_study))
+    add_pilot_arguments(
+        action("pilot", "run a pilot of 25 minutes: instruct, train, record, score, pack as BIDS", run_pilot)
+    )
     check_arguments(
         action("check", "print each participant's order of tasks, and problems of the plan", check_study)
     )
@@ -107,6 +111,14 @@ def add_arguments(parser: ArgumentParser) -> None:
         default=(0.4, 3.0),
         metavar=("META", "MANUAL"),
         help="mean number of mistakes in a task",
+    )
+    made.add_argument(
+        "--hidden",
+        type=float,
+        nargs=2,
+        default=(1.0, 1.0),
+        metavar=("META", "MANUAL"),
+        help="with --like: times as long a task takes where clips have numbers instead of names",
     )
     made.add_argument(
         "--sus", type=float, nargs=2, default=(78.0, 52.0), metavar=("META", "MANUAL"), help="mean SUS scores"
@@ -196,6 +208,7 @@ def simulate_study(options: Namespace) -> int:
         spread=options.spread,
         slips=tuple(options.slips),
         sus=tuple(options.sus),
+        hidden=tuple(options.hidden),
     )
     if options.like is not None:
         from metagraph.research.study.simulation.like_study import write_like
@@ -246,6 +259,8 @@ def _facts(results: Results) -> dict[str, Any]:
         "otherwise": {} if found is None else {w.name: _estimate(w.ratio) for w in found.ways},
         "odd": [] if found is None else list(found.odd),
         "vanished_seconds": {c: v.seconds for c, v in results.vanished.items()},
+        "by_names": {n: _estimate(e) for n, e in results.by_names.items()},
+        "names_ratio": None if results.names_ratio is None else _estimate(results.names_ratio),
         "slope": {c: _estimate(x.slope) for c, x in results.curves.items()},
         "second_sitting": None if time is None or time.order is None else _estimate(time.order.second),
         "measures": {

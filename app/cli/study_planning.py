@@ -43,6 +43,19 @@ def add_arguments(action: Action) -> None:
     made.add_argument(
         "--dropouts", type=float, default=0.0, help="share of people who will not finish (default: 0)"
     )
+    made.add_argument(
+        "--studies",
+        type=int,
+        default=0,
+        help="also simulate so many studies for each number of people, and print how many find the ratio",
+    )
+    made.add_argument(
+        "--people",
+        type=int,
+        nargs="+",
+        metavar="N",
+        help="numbers of people to simulate (default: some from 8 to 40)",
+    )
     made.add_argument("--allocate", action="store_true", help="make the secret for a concealed order")
     made.add_argument("--preregister", action="store_true", help="write the forms of OSF and AsPredicted")
     made.add_argument("--force", action="store_true", help="write the forms again")
@@ -93,6 +106,8 @@ def print_study_plan(options: Namespace) -> int:
     lines.append(
         "Two conditions are balanced with any even number of people. Give each order the same number."
     )
+    if options.studies:
+        lines += _simulate(options, found.ratio, found.worst, 0.05 / tests, data)
     if study is not None and options.allocate:
         data["commitment"] = prepare_allocation(study)
         lines.append(f"SHA-256 of the allocation's secret: {data['commitment']}")
@@ -105,6 +120,32 @@ def print_study_plan(options: Namespace) -> int:
         lines += [str(p) for p in written]
     say(options, "\n".join(lines), data)
     return 0
+
+
+def _simulate(options: Namespace, ratio: float, spread: float, alpha: float, data) -> list[str]:
+    """Return the table of simulated studies, which is added to the data, too."""
+    from app.cli.progress_line import ProgressLine
+    from metagraph.research.study.plan.simulated_power import PEOPLE, simulate_study_power
+    from metagraph.research.study.simulation.people import Truth
+
+    counts = tuple(options.people or PEOPLE)
+    line, rows = ProgressLine(options, "Simulating studies"), []
+    truth = Truth(ratio=ratio, spread=spread)
+    for n, one in enumerate(simulate_study_power(truth, counts, options.studies, alpha), 1):
+        line.tell(n, len(counts))
+        rows.append(one)
+    line.finish()
+    data["simulated"] = [asdict(one) for one in rows]
+    return [
+        f"{options.studies} simulated studies for each number of people:",
+        "| people | find the ratio | interval, factor | intervals hold it | find one where there is none |",
+        "|---|---|---|---|---|",
+        *(
+            f"| {r.people} | {r.found.value:.0%} | {r.factor:.2f} | {r.held.value:.1%} | "
+            f"{r.false.value:.1%} |"
+            for r in rows
+        ),
+    ]
 
 
 def _pilot(folder: Path):

@@ -74,7 +74,11 @@ def check_study(options: Namespace) -> int:
     else:
         print(study.plan.title)
         for who, blocks, stands in rows:
-            order = "; ".join(f"{condition}: {', '.join(tasks)}" for condition, tasks in blocks)
+            numbered = {t for _, tasks in blocks for t in tasks if study.hides(who, t)}
+            order = "; ".join(
+                f"{condition}: {', '.join(f'{t} (names hidden)' if t in numbered else t for t in tasks)}"
+                for condition, tasks in blocks
+            )
             order = order or "drawn at the start"
             print(f"  {who}  {order}  ({stands})")
         for problem in problems:

@@ -1,9 +1,10 @@
-"""The example study: training, and tasks of 10 and 20 sample clips with their right answers. `python -m
-sample_clips.make.study`.
+"""The example study: training, and tasks of 10 and 20 sample clips with their right answers; and the pilot, of
+25 minutes. `python -m sample_clips.make.study`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from metagraph.formats.store import SUFFIX, save_project
@@ -14,6 +15,7 @@ from sample_clips.make.numbered_ids import numbered_ids
 from sample_clips.make.projects import HERE, sample
 
 FOLDER = HERE / "study"
+PILOT = HERE / "pilot"
 
 # As the paper's animator was shown: 2 stances, 1 gesture, 1 fidget, 2 transitions.
 TRAINING = (
@@ -60,16 +62,38 @@ TASKS = {
         "head_straight__neck_stretch_01",
     ),
 }
-TITLES = {"ten": "Ten clips", "twenty": "Twenty clips"}
+TITLES = {"ten": "Ten clips", "twenty": "Twenty clips", "six": "Six clips", "eight": "Eight clips"}
+PILOT_TASKS = {
+    "six": (
+        "hands_at_sides__stance",
+        "on_hips__stance",
+        "hands_at_sides__open_palms_bt_01",
+        "on_hips__readjust_bt_01",
+        "hands_at_sides__to__on_hips",
+        "on_hips__to__hands_at_sides",
+    ),
+    "eight": (
+        "hands_at_sides__stance",
+        "arms_crossed__stance",
+        "hands_at_sides__wave_hello_rt_01",
+        "hands_at_sides__shrug_bt_01",
+        "arms_crossed__shrug_bt_01",
+        "arms_crossed__rub_arm_rt_01",
+        "hands_at_sides__to__arms_crossed",
+        "arms_crossed__to__hands_at_sides",
+    ),
+}
 
 HEAD = """\
-# An example study: the meta-graph against a state machine drawn by hand, on 10 and on 20 clips. docs/researchers/study-file.md says what each field does.
+# An example study: the meta-graph against a state machine drawn by hand, on 10 and on 20 clips. Everybody has names in one of the two
+# tasks and numbers in the other. docs/researchers/study-file.md says what each field does.
 study: 1
 title: Two ways to wire a character
-participants: 12
+participants: 16
 seed: 1
 conditions: [meta, manual]
 order: latin
+names: both
 breaks: 5
 questionnaires: [sus, tlx]
 when: after_condition
@@ -87,14 +111,28 @@ instructions: |
   A character rests in a **stance**: a loop. Out of a stance it plays **gestures**, which say something, and **fidgets**, which do not,
   and goes back to it. A **transition** takes it from one stance to another.
 
-  A clip's name tells its stance first, then what it is: `on_hips__shrug_bt_01` is a shrug out of *on hips*,
-  `hands_at_sides__to__on_hips` the transition between the two. Fidgets are what one does without thinking: adjusting, rubbing, swinging.
+  Where clips have names, a name tells the stance first, then what the clip is: `on_hips__shrug_bt_01` is a shrug out of *on hips*,
+  `hands_at_sides__to__on_hips` the transition between the two. Where clips have numbers, watch them. Fidgets are what one does without
+  thinking: adjusting, rubbing, swinging.
 
   Please wire all clips of each task so that the character can play every one of them, and get back to where it began.
 thanks: |
   That was all. Please tell the experimenter that you are done.
 training:
 """
+PILOT_HEAD = (
+    HEAD.replace(
+        "# An example study: the meta-graph against a state machine drawn by hand, on 10 and on 20 clips. Everybody has names in one of the two\n"
+        "# tasks and numbers in the other.",
+        "# A pilot of 25 minutes: the meta-graph against a state machine drawn by hand, on 6 and on 8 clips. `metagraph study pilot` runs it.\n"
+        "# Everybody has names in one of the two tasks and numbers in the other.",
+    )
+    .replace("title: Two ways to wire a character", "title: Two ways to wire a character (pilot)")
+    .replace("participants: 16", "participants: 8")
+    .replace("breaks: 5\n", "")
+    .replace("questionnaires: [sus, tlx]\n", "questionnaires: [sus]\n")
+    .replace("about two hours", "about 25 minutes")
+)
 LEARN = {
     "meta": """\
     1. Drop the two stances onto the card in the middle: each becomes a stance.
@@ -120,31 +158,40 @@ def clips(names: tuple[str, ...]) -> str:
 
 
 def text() -> str:
-    """Return the study file."""
-    out = HEAD
-    for condition, words in LEARN.items():
+    """Return the study file of the example."""
+    minutes = {"ten": 30.0, "twenty": 60.0}
+    return HEAD + _trained(15) + _tasks(TASKS, minutes)
+
+
+def pilot_text() -> str:
+    """Return the study file of the pilot: at most 3 minutes of practice and 7 of tasks in each condition."""
+    return PILOT_HEAD + _trained(3) + _tasks(PILOT_TASKS, {"six": 3.0, "eight": 4.0})
+
+
+def _trained(minutes: int) -> str:
+    return "".join(
+        f"- condition: {condition}\n  minutes: {minutes}\n  instructions: |\n{words}  clips:\n{clips(TRAINING)}"
+        for condition, words in LEARN.items()
+    )
+
+
+def _tasks(tasks: Mapping[str, tuple[str, ...]], minutes: Mapping[str, float]) -> str:
+    out = "tasks:\n"
+    for task, names in tasks.items():
+        some = "arms and head, " if any(n.startswith("head_") for n in names) else ""
         out += (
-            f"- condition: {condition}\n  minutes: 15\n  instructions: |\n{words}  clips:\n{clips(TRAINING)}"
-        )
-    out += "tasks:\n"
-    for task, names in TASKS.items():
-        out += (
-            f"- id: {task}\n  title: {TITLES[task]}\n  minutes: {30 if task == 'ten' else 60}\n  "
+            f"- id: {task}\n  title: {TITLES[task]}\n  minutes: {minutes[task]:g}\n  "
             f"reference: {task}{SUFFIX}\n"
+            f"  instructions: Wire all clips, {some}each to its stance.\n"
+            f"  clips:\n{clips(names)}"
         )
-        out += (
-            "  instructions: Wire all clips, arms and head, each to the stance its name tells.\n"
-            if task == "twenty"
-            else ("  instructions: Wire all clips, each to the stance its name tells.\n")
-        )
-        out += f"  clips:\n{clips(names)}"
     return out
 
 
 @numbered_ids()
 def reference(task: str, whole: Project) -> Project:
     """Return the right answer to a task: the sample project with its clips alone."""
-    keep = set(TASKS[task])
+    keep = set((TASKS | PILOT_TASKS)[task])
     project = edits.remove_clips(whole, [c.id for c in whole.clips.values() if c.name not in keep])
     for layer in LAYERS:
         for stance in list(project.graphs[layer].stances):
@@ -154,15 +201,16 @@ def reference(task: str, whole: Project) -> Project:
 
 
 def main() -> None:
-    FOLDER.mkdir(exist_ok=True)
-    (FOLDER / "study.yaml").write_text(text(), encoding="utf-8")
+    for folder, said in ((FOLDER, text()), (PILOT, pilot_text())):
+        folder.mkdir(exist_ok=True)
+        (folder / "study.yaml").write_text(said, encoding="utf-8")
     whole = sample()
-    whole = replace(whole, lines={}, performances={}, conversations={}, touch=Touch())
+    whole = replace(whole, lines={}, performances={}, conversations={}, timelines={}, touch=Touch())
     # A participant wires what is there to be wired: no lines, no contacts, and the plain mannequin.
     bare = {a.id: {"contacts": ()} for layer in LAYERS for a in whole.graphs[layer].actions.values()}
     whole = edits.set_character(edits.update_each(whole, bare), "mannequin.glb")
-    for task in TASKS:
-        path = FOLDER / f"{task}{SUFFIX}"
+    for task in (*TASKS, *PILOT_TASKS):
+        path = (FOLDER if task in TASKS else PILOT) / f"{task}{SUFFIX}"
         save_project(reference(task, whole), path, HERE / f"sample{SUFFIX}")
         print(path.name, f"{path.stat().st_size / 1e3:.0f} kB")
 

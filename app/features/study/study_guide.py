@@ -32,6 +32,7 @@ from metagraph import __version__
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.research.study.plan.freeze import study_manifest
+from metagraph.research.study.plan.hidden_names import copy_numbered
 from metagraph.research.study.plan.task_projects import make_task_project, reopen, write_task_project
 from metagraph.research.study.sitting import Phase, Sitting
 from metagraph.research.study.study_plan import CONDITION_TITLES, Study
@@ -247,7 +248,12 @@ class Guide(QObject):
         def work(job: WindowJob) -> Project:
             if again:
                 return reopen(path, job.tell)[0].project
-            return write_task_project(make_task_project(study, phase.clips, name, reference), path)
+            numbered = None
+            if phase.names == "hidden":
+                found = study.make_clip_numbers(self.participant, phase.condition or "", phase.task or "")
+                copies = copy_numbered(found, path.parent / f"{phase.index:02d}-clips")
+                numbered = dict(zip(copies, found.values(), strict=True))
+            return write_task_project(make_task_project(study, phase.clips, name, reference, numbered), path)
 
         self.shell.jobs.start(
             tr("Loading the clips"), work, lambda project: self._begin(phase, project), self._cannot

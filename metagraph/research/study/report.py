@@ -60,6 +60,7 @@ __all__ = [
 ]
 
 NAME = "report.html"
+_NAMES: Mapping[str, str] = {"shown": "clips had their names", "hidden": "clips had numbers instead of names"}
 Paper = Callable[[str], bytes]
 Files = Mapping[str, bytes]
 
@@ -96,6 +97,7 @@ def draw_study_figures(results: Results) -> dict[str, tuple[str, str]]:
             )
         rows: list[tuple[str, Estimate]] = [("all tasks", time.ratio)]
         rows += [(results.data.tasks[t], e) for t, e in results.by_task.items() if len(results.by_task) > 1]
+        rows += [(_NAMES[n], e) for n, e in results.by_names.items() if len(results.by_names) > 1]
         rows += [(TITLES[c.pair[0]], c.ratio) for c in results.others]
         out["ratios"] = (
             plots.plot_ratios(rows),
@@ -217,15 +219,38 @@ def _time(results: Results, drawn: Mapping[str, str]) -> str:
         body.append(["effect size, d<sub>z</sub> (Hedges)", format_interval(time.effect, format_two_digits)])
     for task, ratio in results.by_task.items() if len(results.by_task) > 1 else ():
         body.append([f"ratio, {escape(results.data.tasks[task])}", format_interval(ratio, format_two_digits)])
+    for names, ratio in results.by_names.items() if len(results.by_names) > 1 else ():
+        body.append([f"ratio, {_NAMES[names]}", format_interval(ratio, format_two_digits)])
+    if results.names_ratio is not None:
+        body.append(
+            [
+                "ratio with numbers over ratio with names",
+                format_interval(results.names_ratio, format_two_digits),
+            ]
+        )
     out = "<h2>Time</h2>" + drawn.get("times", "") + drawn.get("ratios", "")
     out += format_cells(("", "value, 95 % interval"), body)
     out += f"<p class='dim'>For a paper: {write_apa_sentence(time)}</p>"
     return (
         out
+        + _names(results)
         + describe_equivalence(results)
         + describe_other_conditions(results)
         + describe_sites(results)
         + _order(time)
+    )
+
+
+def _names(results: Results) -> str:
+    """Say how the clips were called, where the study says it."""
+    if len(results.by_names) == 1:
+        (names,) = results.by_names
+        return f"<p>In all tasks, {_NAMES[names]}.</p>"
+    return (
+        "<p>Each person had names in some tasks and numbers in the others, which tasks by turns. So the two "
+        "ratios by names are of other tasks for each person, and of the same tasks over all.</p>"
+        if results.by_names
+        else ""
     )
 
 

@@ -26,7 +26,8 @@ WORK: tuple[PhaseName, ...] = ("training", "task")  # phases with a project in t
 @dataclass(frozen=True)
 class Phase:
     """index: its place in the sitting. condition, task: ids, where it is about one. minutes: the limit, of a
-    break how long it should be. clips: of the work, as the plan names them.
+    break how long it should be. clips: of the work, as the plan names them. names: how
+    a task's clips are called, "" where the plan says nothing of it.
     """
 
     index: int
@@ -38,6 +39,7 @@ class Phase:
     minutes: float | None = None
     questionnaire: Questionnaire | None = None
     clips: str | tuple[str, ...] = ()
+    names: Literal["", "shown", "hidden"] = ""
 
     @property
     def works(self) -> bool:
@@ -54,6 +56,8 @@ class Phase:
             out["task"] = self.task
         if self.questionnaire is not None:
             out["questionnaire"] = self.questionnaire.id
+        if self.names:
+            out["names"] = self.names
         return out
 
     @property
@@ -131,8 +135,12 @@ def list_phases(study: Study, participant: str) -> tuple[Phase, ...]:
         for ident in tasks:
             task = plan.task(ident)
             more = {"condition": condition, "task": ident, "minutes": task.minutes}
-            add("instructions", f"{task.name}: {editor}", task.instructions, **more)
-            add("task", f"{task.name}: {editor}", task.instructions, clips=task.clips, **more)
+            text, names = task.instructions, ""
+            if plan.names != "shown":
+                names = "hidden" if study.hides(participant, ident) else "shown"
+                text = f"{text}\n\n{plan.hidden}".strip() if names == "hidden" else text
+            add("instructions", f"{task.name}: {editor}", text, **more)
+            add("task", f"{task.name}: {editor}", text, clips=task.clips, names=names, **more)
             ask("after_task", condition, ident)
         if condition not in [c for c, _ in blocks[place + 1 :]]:
             ask("after_condition", condition)

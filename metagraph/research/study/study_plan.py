@@ -25,6 +25,7 @@ from metagraph.formats.project.text import TextError, parse_yaml
 from metagraph.research.study.logs.log import NAME
 from metagraph.research.study.plan.drawn_orders import read_drawn_orders
 from metagraph.research.study.plan.faults import find_plan_faults
+from metagraph.research.study.plan.hidden_names import make_clip_numbers
 from metagraph.research.study.plan.study_fields import Plan, Task, Training, list_few
 
 VERSION = 1
@@ -59,6 +60,17 @@ class Study:
         """
         found = read_drawn_orders(self.folder).get(participant) if self.plan.order == "concealed" else None
         return self.plan.blocks(participant, found)
+
+    def hides(self, participant: str, task: str) -> bool:
+        """Return whether a participant sees the clips of a task under numbers. Raises ValueError as the
+        plan's.
+        """
+        found = read_drawn_orders(self.folder).get(participant) if self.plan.order == "concealed" else None
+        return self.plan.hides(participant, task, found)
+
+    def make_clip_numbers(self, participant: str, condition: str, task: str) -> dict[str, Path]:
+        """Return number -> clip, for a task whose clips have numbers. Raises FileError."""
+        return make_clip_numbers(self.clips(self.plan.task(task).clips), participant, condition, task)
 
     def known(self, participant: str) -> None:
         """Raises ValueError for a stranger."""
@@ -112,6 +124,8 @@ class Study:
             who = f"task '{part.id}'" if isinstance(part, Task) else f"training for '{part.condition}'"
             try:
                 names = {p.name for p in self.clips(part.clips)}
+                if isinstance(part, Task) and self.plan.names != "shown":
+                    self.make_clip_numbers("", "", part.id)
                 if not isinstance(part, Task):
                     continue
                 if part.reference is None:

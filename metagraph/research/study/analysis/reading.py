@@ -22,6 +22,7 @@ from metagraph.research.study.logs.withdrawal import read_deleted
 from metagraph.research.study.machines.klm import USUAL, OperatorTimes, predict_seconds
 from metagraph.research.study.machines.normal_machine import NormalMachine, normalize_machines
 from metagraph.research.study.plan.freeze import describe_study_differences, find_changed_names, list_people
+from metagraph.research.study.plan.hidden_names import reveal_names
 from metagraph.research.study.questionnaires import (
     BUILT_IN,
     compute_sus_score,
@@ -356,6 +357,11 @@ class _References:
         except (FileError, OSError) as error:
             self.missing.append(f"{who}: its project cannot be used: {error}")
             return None
+        if run.names == "hidden":
+            with suppress(FileError):
+                project = reveal_names(
+                    project, self.study.make_clip_numbers(run.participant, run.condition, run.task)
+                )
         attempt = normalize_machines(project, run.condition == "manual")
         found = score(attempt, right[1], self.study.plan.tolerance)
         return with_jumps(found, attempt, right[0]) if self.jumps else found

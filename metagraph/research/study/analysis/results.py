@@ -91,7 +91,8 @@ class Results:
     """Everything a report tells. by_task: task -> its ratio. others: further conditions beside the
     meta-graph. together: what was asked of these people, name, test, and p corrected for how many questions
     those are (Holm); there are no other p values. vanished: by condition, gaps that no time counts. by_site:
-    site -> its ratio.
+    site -> its ratio. by_names: how clips were called (shown, hidden) -> its ratio. names_ratio: the ratio
+    with numbers over that with names, of people who did both.
     """
 
     data: Data
@@ -108,6 +109,8 @@ class Results:
     others: tuple[ConditionComparison, ...] = ()
     by_site: Mapping[str, Estimate] = field(default_factory=dict)
     equivalence: Equivalence | None = None
+    by_names: Mapping[str, Estimate] = field(default_factory=dict)
+    names_ratio: Estimate | None = None
 
 
 def analyse_study(data: Data) -> Results:
@@ -134,6 +137,11 @@ def analyse_study(data: Data) -> Results:
         for m in (*mistakes[:1], *(m for m in ratings if m.name in TOTALS))
         if m.test is not None and m.test.p is not None
     ]
+    named = {
+        n: found
+        for n in ("shown", "hidden")
+        if (found := compare_conditions([r for r in done if r.run.names == n])) is not None
+    }
     others = [compare_conditions(done, data.unit, (c, BELOW)) for c in conditions if c not in PAIR]
     return Results(
         data,
@@ -155,7 +163,20 @@ def analyse_study(data: Data) -> Results:
         judge_equivalence(time.logs, data.smallest)
         if time is not None and data.smallest is not None
         else None,
+        {n: found.ratio for n, found in named.items()},
+        _compare_names(named),
     )
+
+
+def _compare_names(named: Mapping[str, ConditionComparison]) -> Estimate | None:
+    """Return how many times the ratio with numbers is that with names, within people."""
+    if len(named) < 2:
+        return None
+    mine = {n: {p.participant: p.ratio for p in found.people} for n, found in named.items()}
+    both = sorted(mine["shown"].keys() & mine["hidden"].keys())
+    if not both:
+        return None
+    return stats.estimate_ratio([mine["hidden"][p] for p in both], [mine["shown"][p] for p in both])
 
 
 def _site(done: Sequence[AnalysisRow], data: Data, site: str) -> Estimate | None:

@@ -123,6 +123,7 @@ TASK_COLUMNS: Mapping[str, str] = {
     "begun": "When it began, UTC",
     "finished": "Whether the participant ended it",
     "timed_out": "Whether the time limit did",
+    "names": "How the clips were called: shown (their names) or hidden (numbers)",
     "seconds": "Active time",
     "wall": "From begin to end",
     "paused": "In pauses",

@@ -35,6 +35,7 @@ class Condition(Struct, frozen=True, forbid_unknown_fields=True):
     conversation, motion is both sides' files. project: None for the study's. taken: both sides of the
     conversation move as was recorded. without: of a conversation, what nobody moves with. seed: other draws.
     sound: its own; none; or `mismatched`, that of the next item. audio: a sound file for motion and clips.
+    face: `still` keeps mouth, brows and blinks from saying which sound belongs to the motion.
     """
 
     title: Annotated[str, Meta(max_length=200)] = ""
@@ -49,6 +50,7 @@ class Condition(Struct, frozen=True, forbid_unknown_fields=True):
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)] | None = None
     sound: Literal["own", "none", "mismatched"] = "own"
     audio: Where | None = None
+    face: Literal["own", "still"] = "own"
 
 
 class Stretch(Struct, frozen=True, forbid_unknown_fields=True):

@@ -40,7 +40,10 @@ def study_manifest(study: Study) -> dict[str, str]:
         "tasks": plan.tasks,
         "training": plan.training,
         "questions": [(q, q.when or plan.when) for q in plan.questions()],
-        "order": (plan.order, plan.seed, plan.conditions, plan.participants, plan.breaks),
+        "order": (
+            *(plan.order, plan.seed, plan.conditions, plan.participants, plan.breaks),
+            *((plan.names, plan.hidden) if plan.names != "shown" else ()),
+        ),
         "thanks": plan.thanks,
     }
     out = {

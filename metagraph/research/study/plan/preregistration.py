@@ -156,7 +156,19 @@ def _hypothesis(study: Study, aims: Aims) -> str:
     )
 
 
+_NAMES = {
+    "shown": "",
+    "hidden": "Clips have numbers instead of names, in all tasks.",
+    "both": "Everybody has the names of clips in one half of the tasks and numbers in the other, the same in "
+    "every condition; which half alternates over participants and is crossed with both orders.",
+}
+
+
 def _order(study: Study, secret: str | None) -> str:
+    return " ".join(filter(None, (_drawn(study, secret), _NAMES[study.plan.names])))
+
+
+def _drawn(study: Study, secret: str | None) -> str:
     plan = study.plan
     if plan.order == "concealed":
         return (

@@ -8,7 +8,8 @@ from typing import Annotated, Literal
 from msgspec import Meta, Struct
 
 from metagraph.research.study.machines.klm import OperatorTimes
-from metagraph.research.study.plan.order import order_conditions
+from metagraph.research.study.plan.hidden_names import has_hidden_names
+from metagraph.research.study.plan.order import make_williams_design, order_conditions
 from metagraph.research.study.questionnaires import BUILT_IN, Name, Questionnaire, When
 
 MOST = 1000  # participants
@@ -60,7 +61,9 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
     condition but the last. when: what questionnaires are about that do not say it themselves. tolerance:
     seconds by which a timing may differ from the reference. allow: `labels` lets proposals be asked for.
     operators: seconds each operator of the keystroke-level model takes these participants, where it is not
-    as `klm.OperatorTimes` has it.
+    as `klm.OperatorTimes` has it. names: whether clips have their names, numbers instead (`hidden`), or
+    every participant has names in one half of the tasks and numbers in the other (`both`). hidden: what a
+    task with numbers says besides.
     """
 
     study: int
@@ -86,6 +89,8 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
     site: str = ""
     claps: bool = False
     lsl: bool = False
+    names: Literal["shown", "hidden", "both"] = "shown"
+    hidden: str = "The clips of this task have numbers instead of names. Watch them to see what they are."
 
     @property
     def times(self) -> OperatorTimes:
@@ -112,6 +117,21 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
         """Raises ValueError for a stranger."""
         if participant not in self.ids:
             raise ValueError(f"'{participant}' does not take part; there are {list_few(self.ids)}")
+
+    def hides(self, participant: str, task: str, drawn: int | None = None) -> bool:
+        """Return whether a participant sees the clips of a task under numbers. drawn: as `blocks` has it.
+        Raises ValueError for a stranger, and for one for whom no order was drawn yet.
+        """
+        if self.names != "both":
+            return self.names == "hidden"
+        self.known(participant)
+        if self.order == "concealed" and drawn is None:
+            raise ValueError(f"the order of '{participant}' is concealed, and drawn when they begin")
+        number = self.ids.index(participant) if drawn is None else drawn
+        orders = [len(make_williams_design(len(x))) for x in (self.conditions, self.tasks)]
+        if isinstance(self.order, Given) or self.order == "fixed":
+            orders[1] = 1  # tasks have one order
+        return has_hidden_names([t.id for t in self.tasks].index(task), number, *orders)
 
     def blocks(self, participant: str, drawn: int | None = None) -> tuple[tuple[str, tuple[str, ...]], ...]:
         """Return a participant's conditions in order, each with the ids of its tasks in order. drawn: the

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -13,19 +13,24 @@ from metagraph.formats.recovery import find_left_journals, recover, retire
 from metagraph.formats.store import Opened, load_motions, make_path_relative, read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
+from metagraph.research.study.plan.hidden_names import hide_names
 from metagraph.research.study.study_plan import Study
 
 Progress = Callable[[int, int], None]
 
 
 def make_task_project(
-    study: Study, clips: str | tuple[str, ...], name: str, reference: Path | None = None
+    study: Study,
+    clips: str | tuple[str, ...],
+    name: str,
+    reference: Path | None = None,
+    numbered: Mapping[Path, Path] | None = None,
 ) -> Project:
     """Return a project of clips, none of them placed; its paths are absolute. Base pose and character are the
     reference's, whose clips are distinguished by their files' names. Raises FileError when a clip cannot be
-    read: everybody works on the same ones.
+    read: everybody works on the same ones. numbered: copy under a number -> clip, where names are hidden.
     """
-    imported = import_files(Project(name), None, study.clips(clips))
+    imported = import_files(Project(name), None, study.clips(clips) if numbered is None else list(numbered))
     left_out = [*imported.failures, *(why for s in imported.strangers for why in s.failures)]
     if left_out:
         raise FileError(
@@ -35,6 +40,8 @@ def make_task_project(
             "Correct it or leave it out, for everybody.",
         )
     project = imported.into(Project(name))
+    project = project if numbered is None else hide_names(project)
+    own = {copy.name: path.name for copy, path in (numbered or {}).items()}
     if reference is None:
         return project
     right = read_project(reference)
@@ -43,7 +50,9 @@ def make_task_project(
         (
             c.id
             for c in project.clips.values()
-            if base is not None and _same(c.path, base.path) and c.take == base.take
+            if base is not None
+            and own.get(Path(c.path).name, Path(c.path).name) == Path(base.path).name
+            and c.take == base.take
         ),
         None,
     )
@@ -53,10 +62,6 @@ def make_task_project(
         project = edits.set_character(project, (reference.parent / right.character).resolve().as_posix())
         project = edits.hide_meshes(project, right.hidden)
     return project
-
-
-def _same(one: str, other: str) -> bool:
-    return Path(one).name == Path(other).name
 
 
 def write_task_project(project: Project, path: Path) -> Project:

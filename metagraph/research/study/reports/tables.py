@@ -135,6 +135,7 @@ def tabulate_tasks(data: Data) -> Table:
         "begun",
         "finished",
         "timed_out",
+        "names",
         "seconds",
         "wall",
         "paused",
@@ -164,6 +165,7 @@ def tabulate_tasks(data: Data) -> Table:
                 t.begun,
                 t.finished,
                 t.timed_out,
+                t.names or None,
                 t.seconds,
                 t.wall,
                 t.paused,
@@ -237,6 +239,10 @@ def tabulate_estimates(results: Results) -> Table:
         add("task", task, e, results.data.tasks[task])
     for site, e in results.by_site.items():
         add("site", site, e)
+    for names, e in results.by_names.items():
+        add("names", names, e)
+    if results.names_ratio is not None:
+        add("names", "hidden over shown", results.names_ratio)
     for other in results.others:
         add("condition", other.pair[0], other.ratio)
     for way in results.sensitivity.ways if results.sensitivity is not None else ():

@@ -62,6 +62,7 @@ class TaskRun:
     away: float = 0.0
     timed_out: bool = False
     begun: str = ""  # wall time
+    names: str = ""  # of the clips: shown or hidden, "" if the study says nothing of it
 
 
 @dataclass(frozen=True)
@@ -209,6 +210,7 @@ class _Tally:
             away=self.seconds["away"],
             timed_out=self.ended == "time",
             begun=self.begin["wall"],
+            names=str(self.begin.get("names", "")),
         )
 
 

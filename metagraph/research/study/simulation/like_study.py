@@ -104,10 +104,11 @@ def _people(study: Study, truth: Truth) -> Iterator[Simulated]:
             by_hand = condition == "manual"
             for task in tasks:
                 seconds = {}
+                slower = log(truth.hidden[by_hand]) if study.hides(who, task) else 0.0
                 for clip in names[task]:
                     done[condition] = done.get(condition, 0) + 1
                     at = log(truth.seconds) + pace + own * by_hand + truth.learning * log(done[condition])
-                    at += log(truth.order) * order.index(condition)
+                    at += log(truth.order) * order.index(condition) + slower
                     seconds[clip] = exp(at + rng.normal(0, truth.chance))
                 works.append(SimulatedWork(condition, task, seconds, int(rng.poisson(truth.slips[by_hand]))))
         liking, load = rng.normal(0, truth.sus_spread), rng.normal(0, truth.tlx_spread)

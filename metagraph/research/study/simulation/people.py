@@ -27,7 +27,8 @@ class Truth:
     with the meta-graph. learning: slope of log seconds over log of the clip's number. order: seconds of the
     second sitting beside the first. pace, spread: of people, standard deviations of log seconds and of the
     log of their own ratio. chance: of a clip. slips: mean mistakes a task, meta and by hand. sus, tlx: mean
-    ratings, meta and by hand; sus_spread, tlx_spread: of people. Raises ValueError for what cannot be.
+    ratings, meta and by hand; sus_spread, tlx_spread: of people. hidden: times as long where
+    clips have numbers instead of names, meta and by hand. Raises ValueError for what cannot be.
     """
 
     participants: int = 24
@@ -44,6 +45,7 @@ class Truth:
     sus_spread: float = 8.0
     tlx: tuple[float, float] = (35.0, 62.0)
     tlx_spread: float = 8.0
+    hidden: tuple[float, float] = (1.0, 1.0)
 
     def __post_init__(self) -> None:
         for name in ("ratio", "seconds", "order"):
@@ -54,6 +56,8 @@ class Truth:
                 raise ValueError(
                     f"{name} should not be less than 0, and less than 100, not {getattr(self, name):g}"
                 )
+        if not all(0 < x < 1000 for x in self.hidden):
+            raise ValueError("hidden should be greater than 0, and less than 1000")
         if not 1 <= self.participants <= 1000:
             raise ValueError(f"there are 1 to 1000 participants, not {self.participants}")
         if not -3 <= self.learning <= 3:

@@ -1,0 +1,38 @@
+"""`metagraph label` says which arm a stance lacks, and makes twins for it."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from app.cli.parser import main
+from app.project.files import SAMPLE
+from metagraph.formats.store import open_project
+from metagraph.graph.editing.one_sided import list_one_sided
+
+
+def test_an_arm_that_has_nothing_is_named_and_gets_twins(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "clips"
+    folder.mkdir()
+    names = sorted((SAMPLE.parent / "clips").glob("arms_crossed__*.glb"))
+    for path in names:
+        if "__to__" not in path.name:
+            shutil.copy(path, folder)
+    words = ["label", str(folder), "--no-pictures", "--play", "0", "--json"]
+    main(words)
+    shown = capsys.readouterr()
+    (lacking,) = json.loads(shown.out)["one arm"].values()
+    assert lacking["lacks"] == "left" and lacking["actions"] > 2
+    assert "of the right arm and none of the left" in shown.err and "--twins adds" in shown.err
+    again = tmp_path / "again.metagraph.yaml"
+    main([*words, "--twins", "--out", str(again)])
+    assert json.loads(capsys.readouterr().out)["twins"] == lacking["actions"]
+    project = open_project(again).project
+    assert not list_one_sided(project)
+    made = [c for c in project.clips.values() if c.path.startswith("mirrored/")]
+    assert len(made) == lacking["actions"] and all(c.motion is not None for c in made)
