@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from inspect import cleandoc
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,17 @@ def make_schema_texts() -> dict[Path, bytes]:
 
 
 def _text(schema: dict[str, Any]) -> bytes:
-    return msgspec.json.format(msgspec.json.encode(schema), indent=2) + b"\n"
+    return msgspec.json.format(msgspec.json.encode(_tidied(schema)), indent=2) + b"\n"
+
+
+def _tidied(value: Any) -> Any:
+    """Return a schema whose descriptions have no indents: Python takes them out of docstrings from 3.13 on."""
+    if isinstance(value, dict):
+        return {
+            key: cleandoc(part) if key == "description" and isinstance(part, str) else _tidied(part)
+            for key, part in value.items()
+        }
+    return [_tidied(part) for part in value] if isinstance(value, list) else value
 
 
 if __name__ == "__main__":
