@@ -29,7 +29,7 @@ def _text(schema: dict[str, Any]) -> bytes:
 
 
 def _tidied(value: Any) -> Any:
-    """Return a schema whose descriptions have no indents: Python takes them out of docstrings from 3.13 on."""
+    """Return a schema whose descriptions have no indents. From 3.13 on, Python itself takes them out."""
     if isinstance(value, dict):
         return {
             key: cleandoc(part) if key == "description" and isinstance(part, str) else _tidied(part)
