@@ -27,6 +27,7 @@ from app.project.step_store import find_steps
 from app.project.unsaved import Unsaved, count_lost_steps
 from app.project.writing import FolderGoneError
 from app.translation import tr, tr_error
+from app.widgets.finish_typing import finish_typing
 from metagraph.common.extras import find_missing_extra
 from metagraph.common.files import is_file
 from metagraph.common.network_paths import allow
@@ -298,12 +299,14 @@ class Files(QObject):
 
     def save(self) -> bool:
         """Begin to save, on a thread; return whether it was not cancelled."""
+        finish_typing()
         if self.document.path is None or self.document.read_only:
             return self.save_as()
         self.saver.save()
         return True
 
     def save_as(self) -> bool:
+        finish_typing()
         start = find_start_folder(self.document.folder)
         name, _ = QFileDialog.getSaveFileName(
             self.window,

@@ -43,8 +43,8 @@ MAY_BE_EMPTY: tuple[Column, ...] = ("tags", "end", "earliest_exit", "prominence"
 
 
 class _EnterTakes(QObject):
-    """On a list of choices: Enter takes what is chosen in it, or else what was typed, and ends editing. Qt
-    would only close the list.
+    """On a list of choices: Enter takes what is chosen in it, or else what was typed. Escape takes nothing.
+    Both end editing, where Qt would only close the list.
     """
 
     def __init__(self, editor: CellEditor, line: QLineEdit) -> None:
@@ -52,7 +52,13 @@ class _EnterTakes(QObject):
         self.editor, self.line = editor, line
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        enters = isinstance(event, QKeyEvent) and event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+        key = event.key() if isinstance(event, QKeyEvent) else None
+        if key == Qt.Key.Key_Escape and event.type() == QEvent.Type.KeyPress:
+            assert isinstance(watched, QAbstractItemView)
+            watched.hide()
+            self.editor.closeEditor.emit(self.line, QStyledItemDelegate.EndEditHint.RevertModelCache)
+            return True
+        enters = key in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
         if not enters or event.type() != QEvent.Type.KeyPress or not isinstance(watched, QAbstractItemView):
             return False
         if watched.currentIndex().isValid():

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QApplication, QInputDialog, QLineEdit, QMenu
 
 from app.features.table.cell_words import parse_typed
 from app.features.table.table_filter import TableFilter, keep_filters, read_filters
+from app.widgets.finish_typing import finish_typing
 from metagraph.graph import edits
 from metagraph.playback.action_table import COLUMNS, find_row, read_cell
 from tests.app.painted_text import painted
@@ -449,3 +450,27 @@ def test_stances_are_filled_from_parts_of_names(toys, table):
     found = {a.name: a.kind for a in toys.document.project.actions()}
     assert found["rest to up"] == found["far to up"] == "transition" and table.steps() == steps + 1
     panel.names_button.setChecked(False)
+
+
+def test_escape_ends_typing_and_changes_nothing_also_with_the_list_of_choices_open(table):
+    steps = table.steps()
+    table.click("rest beat lf", "kind")
+    table.key(KEY.Key_F, CTRL)
+    table.type("beat")
+    assert len(table.view.selectedIndexes()) == 2
+    table.type("f", end=None)
+    popup = QApplication.focusWidget().completer().popup()
+    table.drive.wait(popup.isVisible)
+    QTest.keyClick(popup, KEY.Key_Escape)
+    assert not table.view.is_editing()
+    table.click("up beat", "tags")
+    assert table.says("rest beat lf", "kind") == table.says("up beat", "kind") == "gesture"
+    assert table.steps() == steps
+
+
+def test_what_is_still_being_typed_is_taken_over_before_saving_and_exporting(table):
+    table.click("rest beat lf", "cooldown")
+    table.type("2", end=None)
+    assert table.view.is_editing()
+    finish_typing()
+    assert not table.view.is_editing() and table.says("rest beat lf", "cooldown") == "2"

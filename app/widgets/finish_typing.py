@@ -1,0 +1,12 @@
+"""Take over what is still being typed, before something reads the whole project."""
+
+from __future__ import annotations
+
+from PySide6.QtWidgets import QAbstractSpinBox, QApplication, QLineEdit, QPlainTextEdit
+
+
+def finish_typing() -> None:
+    """Take over the text of the field that has the keyboard, as when another field is clicked."""
+    field = QApplication.focusWidget()
+    if isinstance(field, QLineEdit | QPlainTextEdit | QAbstractSpinBox):
+        field.clearFocus()
