@@ -16,6 +16,7 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 from app.faults import is_foreseen
 from app.project.autosave import state_folder
 from app.project.document import Document, ProjectPast
+from app.project.finish_typing import finish_typing
 from app.project.jobs import WORDS, Jobs, WindowJob
 from app.project.keeper import Keeper
 from app.project.leftovers import FoundJournal, keep_as_copy, look_beside, remove_journal
@@ -27,7 +28,6 @@ from app.project.step_store import find_steps
 from app.project.unsaved import Unsaved, count_lost_steps
 from app.project.writing import FolderGoneError
 from app.translation import tr, tr_error
-from app.widgets.finish_typing import finish_typing
 from metagraph.common.extras import find_missing_extra
 from metagraph.common.files import is_file
 from metagraph.common.network_paths import allow

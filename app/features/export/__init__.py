@@ -15,7 +15,7 @@ def contribute(shell: Shell) -> Contribution:
 
     def export() -> None:
         from app.features.export.export_dialog import ExportDialog
-        from app.widgets.finish_typing import finish_typing
+        from app.project.finish_typing import finish_typing
 
         finish_typing()
         ExportDialog(document, shell.jobs, shell.widget, session.onstage.mode == "manual").open()

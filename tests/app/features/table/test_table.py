@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QApplication, QInputDialog, QLineEdit, QMenu
 
 from app.features.table.cell_words import parse_typed
 from app.features.table.table_filter import TableFilter, keep_filters, read_filters
-from app.widgets.finish_typing import finish_typing
+from app.project.finish_typing import finish_typing
 from metagraph.graph import edits
 from metagraph.playback.action_table import COLUMNS, find_row, read_cell
 from tests.app.painted_text import painted
