@@ -6,7 +6,11 @@ from PySide6.QtWidgets import QAbstractSpinBox, QApplication, QLineEdit, QPlainT
 
 
 def finish_typing() -> None:
-    """Take over the text of the field that has the keyboard, as when another field is clicked."""
+    """Take over the text of the field that has the keyboard, as when another field is clicked. A field that
+    stays open keeps the keyboard.
+    """
     field = QApplication.focusWidget()
     if isinstance(field, QLineEdit | QPlainTextEdit | QAbstractSpinBox):
         field.clearFocus()
+        if field.isVisible():
+            field.setFocus()

@@ -56,12 +56,18 @@ class FromNamesRow(QWidget):
             self._say(tr_error(error))
             return None
 
-    def show_fitting(self, count: int, name: str, fields: dict[Column, str]) -> None:
-        """Say how many rows fit, and what is read from the first, which has a name."""
+    def show_fitting(self, new: int, fitting: int, name: str, fields: dict[Column, str]) -> None:
+        """Say how many rows would change, of those that fit, and what is read from the first, which has a
+        name.
+        """
         first = ", ".join(f"{TITLES[column]} {text}" for column, text in fields.items())
-        some = tr_plural("{count:,} row", "{count:,} rows", count)
-        self._say(f"{some}. {name}: {first}" if count else tr("No name fits"))
-        self.go.setEnabled(count > 0)
+        if new:
+            self._say(f"{tr_plural('{count:,} row', '{count:,} rows', new)}. {name}: {first}")
+        elif fitting:
+            self._say(tr_plural("{count:,} row is filled", "{count:,} rows are filled", fitting))
+        else:
+            self._say(tr("No name fits"))
+        self.go.setEnabled(new > 0)
 
     def show_nothing(self) -> None:
         """Show that there is nothing to fill; what was said of a wrong pattern stays."""

@@ -37,7 +37,7 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.soon import Soon
 from metagraph.graph.model import Project
-from metagraph.playback.action_table import COLUMNS, Cell, write_cells
+from metagraph.playback.action_table import COLUMNS, Cell, read_cell, write_cells
 from metagraph.playback.name_fields import NamePattern, fill_from_names
 
 TITLES_OF: Mapping[Which, str] = make_lazy_texts(
@@ -348,11 +348,17 @@ class TablePanel(QWidget):
             self.naming.show_nothing()
             return
         rows = [self.rows.rows[n] for n in self._replaced_rows()]
-        filled = fill_from_names(self.document.project, rows, pattern)
+        project = self.document.project
+        filled = fill_from_names(project, rows, pattern)
         fitting = [row for row in rows if (row.ident, pattern.columns[0]) in filled]
-        first = {c: filled[fitting[0].ident, c] for c in pattern.columns} if fitting else {}
-        name = self.document.project.clips[fitting[0].clip].name if fitting else ""
-        self.naming.show_fitting(len(fitting), name, first)
+        new = [
+            row
+            for row in fitting
+            if any(filled[row.ident, c] != read_cell(project, row, c) for c in pattern.columns)
+        ]
+        first = {c: filled[new[0].ident, c] for c in pattern.columns} if new else {}
+        name = project.clips[new[0].clip].name if new else ""
+        self.naming.show_fitting(len(new), len(fitting), name, first)
 
     def _fill_filters(self, menu: QMenu) -> None:
         menu.clear()

@@ -449,6 +449,8 @@ def test_stances_are_filled_from_parts_of_names(toys, table):
     QTest.keyClick(panel.naming.pattern, KEY.Key_Return)
     found = {a.name: a.kind for a in toys.document.project.actions()}
     assert found["rest to up"] == found["far to up"] == "transition" and table.steps() == steps + 1
+    table.drive.wait(lambda: panel.naming.said.text() == "4 rows are filled")
+    assert not panel.naming.go.isEnabled()
     panel.names_button.setChecked(False)
 
 
