@@ -423,8 +423,8 @@ def sample_clips_read_once() -> None:
     """A process decodes each sample clip once, wherever a copy of it lies: opening the sample project a
     hundred times cost more than most of what is tested on it. Files that differ in a byte are read.
     """
-    from metagraph.formats import store
     from metagraph.formats.gltf import reader as gltf
+    from metagraph.formats.project import clip_loading
 
     read = gltf.read_gltf_clips
     known: dict[tuple[str, bytes, frozenset[str]], list[Clip]] = {}
@@ -440,7 +440,7 @@ def sample_clips_read_once() -> None:
         return [copy.copy(clip) for clip in known[key]]  # each reader has clips of its own to lose
 
     gltf.read_gltf_clips = read_once
-    store._Loading._fitted = fitted_once(store._Loading._fitted)  # type: ignore[method-assign]
+    clip_loading._Loading._fitted = fitted_once(clip_loading._Loading._fitted)  # type: ignore[method-assign]
 
 
 @pytest.fixture(scope="session")

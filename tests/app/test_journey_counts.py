@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QApplication, QPushButton, QWidget
 
 from app.widgets.lane_geometry import place_lanes
 from metagraph.formats.gltf.writer import write_glb
-from metagraph.formats.store import make_paths_absolute
+from metagraph.formats.project.paths import make_paths_absolute
 from metagraph.graph import edits, requests
 from metagraph.graph.model import Project
 from tests.app.pointer import press
