@@ -20,7 +20,7 @@ from metagraph.graph.model import Project
 from tests.app.pointer import press
 from tests.processes import ROOT
 
-pytestmark = [pytest.mark.window, pytest.mark.gl]
+pytestmark = [pytest.mark.window, pytest.mark.gl, pytest.mark.nightly]
 CONTROL = Qt.KeyboardModifier.ControlModifier
 SHIFT = Qt.KeyboardModifier.ShiftModifier
 
