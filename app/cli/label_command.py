@@ -292,7 +292,10 @@ def _told_of_merging(begun: Begun, path: Path) -> tuple[str, dict[str, int]]:
     if begun.skipped:
         words += f"; skipped {begun.skipped} clips that it already has"
     if begun.waiting:
-        words += f"; {begun.waiting} of its clips have no label yet: metagraph label {path}"
+        from app.typed_command import list_program_words, quote_command
+
+        command = quote_command([*list_program_words(), "label", str(path)])
+        words += f"; {begun.waiting} of its clips have no label yet: {command}"
     if not begun.clips:
         words += (
             "; nothing was changed. Add --overwrite to make the project again and keep this one as a version"

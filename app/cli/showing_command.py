@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import shlex
-import subprocess
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from app.typed_command import list_program_words, quote_command
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.graph.model import Project
@@ -22,7 +21,17 @@ def name_showing_command(project: Project, problem: Problem, path: Path) -> str:
     action = project.action(problem.action or "")
     if problem.moment is not None:
         start = f"{max(0.0, problem.moment - BEFORE):.1f}"
-        words = ["metagraph", "render", str(path), "--start", start, "-s", f"{LASTS:g}", "-o", "seen.mp4"]
+        words = [
+            *list_program_words(),
+            "render",
+            str(path),
+            "--start",
+            start,
+            "-s",
+            f"{LASTS:g}",
+            "-o",
+            "seen.mp4",
+        ]
     elif problem.code.startswith(("play-", "clip-jump")) and action and action.clip in project.clips:
         words = name_window_command(project, action.clip, path)
     else:
@@ -35,9 +44,4 @@ def name_window_command(project: Project, clip: str, path: Path) -> list[str]:
     name = project.clips[clip].name
     if name.startswith("-") or sum(entry.name == name for entry in project.clips.values()) > 1:
         name = clip
-    return ["metagraph", "window", str(path), "--clip", name]
-
-
-def quote_command(words: list[str]) -> str:
-    """Return a command as this system's terminal reads it."""
-    return subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)
+    return [*list_program_words(), "window", str(path), "--clip", name]
