@@ -18,8 +18,8 @@ from metagraph.research.study.perceive.crossed import Crossed
 from metagraph.research.study.perceive.perceive_data import Answers, Rated, RaterChoice
 from metagraph.research.study.statistics import mixed as stats_mixed
 from metagraph.research.study.statistics import small_samples as stats
+from metagraph.research.study.statistics.distributions import compute_t_quantile, compute_t_two_sided
 from metagraph.research.study.statistics.small_samples import LEVEL, Estimate
-from metagraph.research.study.statistics.student_t import compute_t_quantile, compute_t_two_sided
 
 FEW_PEOPLE, FEW_ITEMS = 12, 8  # below which deviations are hardly known
 MOST_ROWS = 50_000  # of differences, beyond which people's means are compared instead

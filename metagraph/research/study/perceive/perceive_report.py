@@ -22,6 +22,7 @@ from metagraph.research.study.reports.figure_files import make_standalone_svg
 from metagraph.research.study.reports.style import STYLE
 from metagraph.research.study.reports.tables import Table
 from metagraph.research.study.reports.tables import format_rows as csv_of
+from metagraph.research.study.statistics.distributions import describe_software
 from metagraph.research.study.statistics.small_samples import Estimate
 
 NAME = "report.html"
@@ -122,7 +123,7 @@ def format_perceive_page(results: PerceiveResults) -> str:
         _sides(results),
         _people(results, drawn),
         _claims(results),
-        f"<h2>How it was reckoned</h2>{METHODS}",
+        f"<h2>How it was reckoned</h2>{METHODS}<p>{describe_software()}</p>",
     ]
     head = (
         "<meta charset='utf-8'><meta name='viewport' content='width=device-width'>"
