@@ -156,7 +156,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     faults = [p.message for p in seen if p.severity == "error"]
     gaps = [] if options.no_bridges else describe_unbridged(taken.project)
     if changed:
-        lists = {
+        lists: dict[str, Sequence[str]] = {
             "Seen when it was played": [p.message for p in seen],
             "Blended, because no clip leads there": describe_bridges(taken.project, bridges),
             "Not joined to the other stances": gaps,
@@ -245,12 +245,12 @@ def add_twins(project: Project, one_sided: Sequence[OneSided], folder: Path) -> 
     from metagraph.graph.edit_error import EditError
     from metagraph.graph.editing.mirroring import make_twin_clips
 
-    made = []
-    for one in one_sided:
-        for action in one.actions:
-            with suppress(EditError):
-                made += [(twin, write_twin(twin, folder)) for twin in make_twin_clips(project, [action])]
-    return with_twins(project, made) if made else project
+    actions = [action for one in one_sided for action in one.actions]
+    try:
+        made = [(twin, write_twin(twin, folder)) for twin in make_twin_clips(project, actions, skip=True)]
+    except EditError:
+        return project
+    return with_twins(project, made)
 
 
 def _rehearse(options: Namespace, project: Project) -> list[Problem]:
