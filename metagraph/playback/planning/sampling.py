@@ -33,13 +33,16 @@ from metagraph.playback.planning.director import (
     APART,
     GOES_HOME,
     LEAST_BEATS,
+    LEAST_LULL,
     LEAVES_HOME,
     LONG_REST,
+    MOST_LULL,
     MUSED,
     MUSES,
     SHORTER,
     STANDS_OUT,
     beat_interval,
+    find_lull,
     freshness,
     musing,
     posture,
@@ -233,10 +236,25 @@ class Performer:
             return False
         if self.model is None or self._leads(now) != "":
             return True
+        if self._lulls(now):
+            return False
         there = self.stance == musing(self.graph.stances)
         if there and meta.request.kind == "transition" and self._muses(now):
             return False
         return performs(self.model, self.seed, meta, mode_at(self.track, now))
+
+    def _lulls(self, now: float) -> bool:
+        """Return whether the arms rest at a time: after a burst of one who talks, else after any act."""
+        variety = self.project.settings.variety
+        if self.graph.layer != "arms" or variety <= 0 or len(self.cues) == 0 or self._has_mused(now):
+            return False
+        last = self.cues[-1]
+        if now >= last.end + MOST_LULL:
+            return False
+        talks = mode_at(self.track, now) == "talking"
+        if talks and last.action.kind == "transition":  # it opens a burst
+            return False
+        return now < last.end + find_lull(self.seed, last.meta, talks, variety)
 
     def _muses(self, now: float) -> bool:
         """Return whether the arms take or keep the stance in which the character thinks."""
@@ -631,6 +649,8 @@ class Performer:
         layer = self.graph.layer
         if meta.request.kind == "transition":
             if now < self._moved() + posture(layer) * variety:
+                return []
+            if layer == "arms" and now < self.acted + LEAST_LULL * variety:
                 return []
             if layer != "head":
                 return list(candidates)

@@ -145,6 +145,9 @@ struct Performer {
     /// an interruption, and nothing that would end a thought.
     bool _may_begin(const Ref<MetaAction>& meta, double now);
 
+    /// Return whether the arms rest at a time: after a burst of one who talks, else after any act.
+    bool _lulls(double now);
+
     /// Return whether the arms take or keep the stance in which the character thinks.
     bool _muses(double now);
 
@@ -455,11 +458,30 @@ inline bool Performer::_may_begin(const Ref<MetaAction>& meta, double now) {
     if (this->model == nullptr || this->_leads(now) != "") {
         return true;
     }
+    if (this->_lulls(now)) {
+        return false;
+    }
     bool there = this->stance == director::musing(this->graph->stances);
     if (there && meta->request->kind == "transition" && this->_muses(now)) {
         return false;
     }
     return markov::performs(this->model, this->seed, meta, wanted::mode_at(this->track, now));
+}
+
+inline bool Performer::_lulls(double now) {
+    double variety = this->project->settings->variety;
+    if (this->graph->layer != "arms" || variety <= 0 || lang::len(this->cues) == 0 || this->_has_mused(now)) {
+        return false;
+    }
+    Ref<Cue> last = lang::at(this->cues, -1);
+    if (now >= last->end + director::MOST_LULL) {
+        return false;
+    }
+    bool talks = wanted::mode_at(this->track, now) == "talking";
+    if (talks && last->action->kind == "transition") { // it opens a burst
+        return false;
+    }
+    return now < last->end + director::find_lull(this->seed, last->meta, talks, variety);
 }
 
 inline bool Performer::_muses(double now) {
@@ -1125,6 +1147,9 @@ inline List<Ref<Action>> Performer::_fresh(
     std::string layer = this->graph->layer;
     if (meta->request->kind == "transition") {
         if (now < this->_moved() + director::posture(layer) * variety) {
+            return List<Ref<Action>>{};
+        }
+        if (layer == "arms" && now < this->acted + director::LEAST_LULL * variety) {
             return List<Ref<Action>>{};
         }
         if (layer != "head") {

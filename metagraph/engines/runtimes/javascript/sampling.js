@@ -27,13 +27,16 @@ import {
   APART,
   GOES_HOME,
   LEAST_BEATS,
+  LEAST_LULL,
   LEAVES_HOME,
   LONG_REST,
+  MOST_LULL,
   MUSED,
   MUSES,
   SHORTER,
   STANDS_OUT,
   beatInterval,
+  findLull,
   freshness,
   musing,
   posture,
@@ -266,11 +269,31 @@ export class Performer {
     if (this.model === null || this.leads(now) !== "") {
       return true;
     }
+    if (this.lulls(now)) {
+      return false;
+    }
     const there = this.stance === musing(this.graph.stances);
     if (there && meta.request.kind === "transition" && this.muses(now)) {
       return false;
     }
     return performs(this.model, this.seed, meta, modeAt(this.track, now));
+  }
+
+  /** Return whether the arms rest at a time: after a burst of one who talks, else after any act. */
+  lulls(now) {
+    const variety = this.project.settings.variety;
+    if (this.graph.layer !== "arms" || variety <= 0 || this.cues.length === 0 || this.hasMused(now)) {
+      return false;
+    }
+    const last = this.cues[this.cues.length - 1];
+    if (now >= last.end + MOST_LULL) {
+      return false;
+    }
+    const talks = modeAt(this.track, now) === "talking";
+    if (talks && last.action.kind === "transition") { // it opens a burst
+      return false;
+    }
+    return now < last.end + findLull(this.seed, last.meta, talks, variety);
   }
 
   /** Return whether the arms take or keep the stance in which the character thinks. */
@@ -758,6 +781,9 @@ export class Performer {
     const layer = this.graph.layer;
     if (meta.request.kind === "transition") {
       if (now < this.moved() + posture(layer) * variety) {
+        return [];
+      }
+      if (layer === "arms" && now < this.acted + LEAST_LULL * variety) {
         return [];
       }
       if (layer !== "head") {

@@ -284,12 +284,37 @@ namespace Metagraph
             {
                 return true;
             }
+            if (Lulls(now))
+            {
+                return false;
+            }
             var there = Stance == DirectorRules.Musing(Graph.Stances);
             if (there && meta.Request.Kind == "transition" && Muses(now))
             {
                 return false;
             }
             return MarkovRules.Performs(Model, Seed, meta, WantedRules.ModeAt(Track, now));
+        }
+
+        /// <summary>Return whether the arms rest at a time: after a burst of one who talks, else after any act.</summary>
+        public bool Lulls(double now)
+        {
+            var variety = Project.Settings.Variety;
+            if (Graph.Layer != "arms" || variety <= 0 || Cues.Count == 0 || HasMused(now))
+            {
+                return false;
+            }
+            var last = Cues[Cues.Count - 1];
+            if (now >= last.End + DirectorRules.MostLull)
+            {
+                return false;
+            }
+            var talks = WantedRules.ModeAt(Track, now) == "talking";
+            if (talks && last.Action.Kind == "transition") // it opens a burst
+            {
+                return false;
+            }
+            return now < last.End + DirectorRules.FindLull(Seed, last.Meta, talks, variety);
         }
 
         /// <summary>Return whether the arms take or keep the stance in which the character thinks.</summary>
@@ -935,6 +960,10 @@ namespace Metagraph
             if (meta.Request.Kind == "transition")
             {
                 if (now < Moved() + DirectorRules.Posture(layer) * variety)
+                {
+                    return new List<GraphAction>();
+                }
+                if (layer == "arms" && now < Acted + DirectorRules.LeastLull * variety)
                 {
                     return new List<GraphAction>();
                 }

@@ -224,10 +224,25 @@ class Performer:
 			return false
 		if self.model == null or self._leads(now) != "":
 			return true
+		if self._lulls(now):
+			return false
 		var there = self.stance == Director.musing(self.graph.stances)
 		if there and meta.request.kind == "transition" and self._muses(now):
 			return false
 		return Markov.performs(self.model, self.seed_, meta, Wanted.mode_at(self.track, now))
+
+	# Return whether the arms rest at a time: after a burst of one who talks, else after any act.
+	func _lulls(now):
+		var variety = self.project.settings.variety
+		if self.graph.layer != "arms" or variety <= 0 or self.cues.size() == 0 or self._has_mused(now):
+			return false
+		var last = self.cues[-1]
+		if now >= last.end + Director.MOST_LULL:
+			return false
+		var talks = Wanted.mode_at(self.track, now) == "talking"
+		if talks and last.action.kind == "transition":  # it opens a burst
+			return false
+		return now < last.end + Director.find_lull(self.seed_, last.meta, talks, variety)
 
 	# Return whether the arms take or keep the stance in which the character thinks.
 	func _muses(now):
@@ -713,6 +728,8 @@ class Performer:
 		var layer = self.graph.layer
 		if meta.request.kind == "transition":
 			if now < self._moved() + Director.posture(layer) * variety:
+				return []
+			if layer == "arms" and now < self.acted + Director.LEAST_LULL * variety:
 				return []
 			if layer != "head":
 				return Util.list(candidates)
