@@ -29,6 +29,10 @@ inline constexpr double EACH = 7.0; // seconds of those for each gesture of the 
 inline constexpr double STALE = 0.05; // least factor of the likelihood of what has just been played
 // share of the acts of one who talks that end a burst: some 2.5 acts, then a rest
 inline constexpr double ENDS_BURST = 0.25;
+inline constexpr double LEAST_LULL = 5.0; // seconds of that rest at least
+inline constexpr double MOST_LULL = 30.0; // and at most
+inline constexpr double LULL = 10.0; // its mean before it is clamped
+inline constexpr double LULL_SPREAD = 6.0; // and its standard deviation
 inline constexpr double LEAVES_HOME = 0.2; // share of the written tilts of the head that leave the stance it begins in
 inline constexpr double GOES_HOME = 0.7; // share of the written moves of a tilted head that go back there
 inline constexpr double MUSES = 2.0; // seconds that a thought goes on at least for which a hand goes to the chin
