@@ -244,14 +244,17 @@ class Performer:
         return performs(self.model, self.seed, meta, mode_at(self.track, now))
 
     def _lulls(self, now: float) -> bool:
-        """Return whether the arms rest at a time: after a burst of one who talks, else after any act."""
+        """Return whether the arms rest at a time: after a burst of one who talks, else after any act. In a
+        thought acts are rare anyway.
+        """
         variety = self.project.settings.variety
         if self.graph.layer != "arms" or variety <= 0 or len(self.cues) == 0 or self._has_mused(now):
             return False
         last = self.cues[-1]
-        if now >= last.end + MOST_LULL:
+        mode = mode_at(self.track, now)
+        if now >= last.end + MOST_LULL or mode == "thinking":
             return False
-        talks = mode_at(self.track, now) == "talking"
+        talks = mode == "talking"
         if talks and last.action.kind == "transition":  # it opens a burst
             return False
         return now < last.end + find_lull(self.seed, last.meta, talks, variety)

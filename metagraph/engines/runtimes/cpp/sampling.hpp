@@ -145,7 +145,8 @@ struct Performer {
     /// an interruption, and nothing that would end a thought.
     bool _may_begin(const Ref<MetaAction>& meta, double now);
 
-    /// Return whether the arms rest at a time: after a burst of one who talks, else after any act.
+    /// Return whether the arms rest at a time: after a burst of one who talks, else after any act. In a thought acts
+    /// are rare anyway.
     bool _lulls(double now);
 
     /// Return whether the arms take or keep the stance in which the character thinks.
@@ -474,10 +475,11 @@ inline bool Performer::_lulls(double now) {
         return false;
     }
     Ref<Cue> last = lang::at(this->cues, -1);
-    if (now >= last->end + director::MOST_LULL) {
+    std::string mode = wanted::mode_at(this->track, now);
+    if (now >= last->end + director::MOST_LULL || mode == "thinking") {
         return false;
     }
-    bool talks = wanted::mode_at(this->track, now) == "talking";
+    bool talks = mode == "talking";
     if (talks && last->action->kind == "transition") { // it opens a burst
         return false;
     }

@@ -279,17 +279,21 @@ export class Performer {
     return performs(this.model, this.seed, meta, modeAt(this.track, now));
   }
 
-  /** Return whether the arms rest at a time: after a burst of one who talks, else after any act. */
+  /**
+   * Return whether the arms rest at a time: after a burst of one who talks, else after any act. In a thought acts are rare
+   * anyway.
+   */
   lulls(now) {
     const variety = this.project.settings.variety;
     if (this.graph.layer !== "arms" || variety <= 0 || this.cues.length === 0 || this.hasMused(now)) {
       return false;
     }
     const last = this.cues[this.cues.length - 1];
-    if (now >= last.end + MOST_LULL) {
+    const mode = modeAt(this.track, now);
+    if (now >= last.end + MOST_LULL || mode === "thinking") {
       return false;
     }
-    const talks = modeAt(this.track, now) === "talking";
+    const talks = mode === "talking";
     if (talks && last.action.kind === "transition") { // it opens a burst
       return false;
     }

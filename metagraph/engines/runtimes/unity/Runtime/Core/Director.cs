@@ -26,8 +26,8 @@ namespace Metagraph
         public const double EndsBurst = 0.25; // share of the acts of one who talks that end a burst: some 2.5 acts, then a rest
         public const double LeastLull = 5.0; // seconds of that rest at least
         public const double MostLull = 30.0; // and at most
-        public const double Lull = 10.0; // its mean before it is clamped
-        public const double LullSpread = 6.0; // and its standard deviation
+        public const double Lull = 8.0; // its mean before it is clamped
+        public const double LullSpread = 14.0; // and its standard deviation
         public const double LeavesHome = 0.2; // share of the written tilts of the head that leave the stance it begins in
         public const double GoesHome = 0.7; // share of the written moves of a tilted head that go back there
         public const double Muses = 2.0; // seconds that a thought goes on at least for which a hand goes to the chin

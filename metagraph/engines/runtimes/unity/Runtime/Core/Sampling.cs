@@ -296,7 +296,10 @@ namespace Metagraph
             return MarkovRules.Performs(Model, Seed, meta, WantedRules.ModeAt(Track, now));
         }
 
-        /// <summary>Return whether the arms rest at a time: after a burst of one who talks, else after any act.</summary>
+        /// <summary>
+        /// Return whether the arms rest at a time: after a burst of one who talks, else after any act. In a thought acts are rare
+        /// anyway.
+        /// </summary>
         public bool Lulls(double now)
         {
             var variety = Project.Settings.Variety;
@@ -305,11 +308,12 @@ namespace Metagraph
                 return false;
             }
             var last = Cues[Cues.Count - 1];
-            if (now >= last.End + DirectorRules.MostLull)
+            var mode = WantedRules.ModeAt(Track, now);
+            if (now >= last.End + DirectorRules.MostLull || mode == "thinking")
             {
                 return false;
             }
-            var talks = WantedRules.ModeAt(Track, now) == "talking";
+            var talks = mode == "talking";
             if (talks && last.Action.Kind == "transition") // it opens a burst
             {
                 return false;

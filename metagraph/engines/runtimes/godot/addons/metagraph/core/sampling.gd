@@ -231,15 +231,17 @@ class Performer:
 			return false
 		return Markov.performs(self.model, self.seed_, meta, Wanted.mode_at(self.track, now))
 
-	# Return whether the arms rest at a time: after a burst of one who talks, else after any act.
+	# Return whether the arms rest at a time: after a burst of one who talks, else after any act. In a thought acts are rare
+	# anyway.
 	func _lulls(now):
 		var variety = self.project.settings.variety
 		if self.graph.layer != "arms" or variety <= 0 or self.cues.size() == 0 or self._has_mused(now):
 			return false
 		var last = self.cues[-1]
-		if now >= last.end + Director.MOST_LULL:
+		var mode = Wanted.mode_at(self.track, now)
+		if now >= last.end + Director.MOST_LULL or mode == "thinking":
 			return false
-		var talks = Wanted.mode_at(self.track, now) == "talking"
+		var talks = mode == "talking"
 		if talks and last.action.kind == "transition":  # it opens a burst
 			return false
 		return now < last.end + Director.find_lull(self.seed_, last.meta, talks, variety)
