@@ -71,13 +71,14 @@ export class SamplingStep {
  *
  * uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
  * meta actions whose chain of transitions already plays. served: keys of those that the action of another one serves, too.
- * moods: the mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far. acted:
- * when the last action ended. track: what lasts. model: the one that wrote what was not requested, None if there is none.
- * beats: seconds after which a gesture that hardly shows may be done again.
+ * moods: the mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far.
+ * prominences: of actions, as far as needed. acted: when the last action ended. track: what lasts. model: the one that wrote
+ * what was not requested, None if there is none. beats: seconds after which a gesture that hardly shows may be done again.
  *
  * project: Project; graph: MetaGraph; seed: number; stance: string; moods: Moods; track: Track; free: number; acted: number;
  * uses: Map<string, number>; recent: Map<string, string[]>; ended: Map<string, number>; cues: Cue[]; rests: Rest[]; reports:
- * Report[]; begun: Set<string>; served: Set<string>; candidates: Map<string, Action[]>; model: ?Markov; beats: number.
+ * Report[]; begun: Set<string>; served: Set<string>; candidates: Map<string, Action[]>; prominences: Map<string, number>;
+ * model: ?Markov; beats: number.
  */
 export class Performer {
   constructor(
@@ -98,6 +99,7 @@ export class Performer {
     begun = new Set([]),
     served = new Set([]),
     candidates = new Map(),
+    prominences = new Map(),
     model = null,
     beats = LEAST_BEATS,
   ) {
@@ -118,6 +120,7 @@ export class Performer {
     this.begun = begun;
     this.served = served;
     this.candidates = candidates;
+    this.prominences = prominences;
     this.model = model;
     this.beats = beats;
   }
@@ -589,8 +592,9 @@ export class Performer {
     const directed = meta.written && this.project.settings.variety > 0;
     if (directed) { // the model's limb and tags are wishes, not orders
       every = this.fresh(meta, every, now);
-      found = found.filter((a) => every.includes(a));
-      exact = exact.filter((a) => every.includes(a));
+      const fresh = every.map((a) => a.id);
+      found = found.filter((a) => fresh.includes(a.id));
+      exact = exact.filter((a) => fresh.includes(a.id));
       if (every.length === 0) {
         const moves = this.movesOn(meta, now);
         return moves.length > 0 ? [new SamplingStep(moves)] : null;
@@ -774,9 +778,17 @@ export class Performer {
     if (!this.ended.has(action.id)) {
       return 1;
     }
-    const shows = measureProminence(this.project, action);
+    const shows = this.shows(action);
     const needed = repeatInterval(action.kind, shows, this.beats) * variety;
     return freshness(now - this.ended.get(action.id), needed);
+  }
+
+  /** Return how much an action stands out. */
+  shows(action) {
+    if (!this.prominences.has(action.id)) {
+      this.prominences.set(action.id, measureProminence(this.project, action));
+    }
+    return this.prominences.get(action.id);
   }
 
   /** Return the actions that the character may do by itself; see `director`. */
@@ -806,7 +818,7 @@ export class Performer {
     const converses = meta.request.kind === "fidget" && modeAt(this.track, now) !== "idle";
     const out = [];
     for (const action of candidates) {
-      const shows = measureProminence(this.project, action);
+      const shows = this.shows(action);
       if ((reminded || converses) && shows >= STANDS_OUT) {
         continue;
       }
@@ -831,7 +843,7 @@ export class Performer {
     if (meta.written || modeAt(this.track, now) === "idle") {
       return every;
     }
-    const left = every.filter((a) => measureProminence(this.project, a) < STANDS_OUT);
+    const left = every.filter((a) => this.shows(a) < STANDS_OUT);
     return left.length > 0 ? left : every;
   }
 
@@ -863,7 +875,7 @@ export class Performer {
     }
     const variety = this.project.settings.variety;
     for (const action of this.graph.of(stance, "gesture")) {
-      const shows = measureProminence(this.project, action);
+      const shows = this.shows(action);
       const needed = repeatInterval("gesture", shows, this.beats) * variety;
       if (!this.ended.has(action.id) || now >= this.ended.get(action.id) + needed) {
         count += 1;
@@ -891,7 +903,7 @@ export class Performer {
       if (action === null || action.kind === "transition" || end < since) {
         continue;
       }
-      if (measureProminence(this.project, action) >= STANDS_OUT) {
+      if (this.shows(action) >= STANDS_OUT) {
         return true;
       }
     }

@@ -35,9 +35,9 @@ class SamplingStep:
 #
 # uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of meta
 # actions whose chain of transitions already plays. served: keys of those that the action of another one serves, too. moods: the
-# mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far. acted: when the last
-# action ended. track: what lasts. model: the one that wrote what was not requested, None if there is none. beats: seconds after
-# which a gesture that hardly shows may be done again.
+# mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far. prominences: of actions,
+# as far as needed. acted: when the last action ended. track: what lasts. model: the one that wrote what was not requested, None
+# if there is none. beats: seconds after which a gesture that hardly shows may be done again.
 class Performer:
 	var project
 	var graph
@@ -56,6 +56,7 @@ class Performer:
 	var begun
 	var served
 	var candidates
+	var prominences
 	var model
 	var beats
 
@@ -77,6 +78,7 @@ class Performer:
 		begun_ = null,
 		served_ = null,
 		candidates_ = null,
+		prominences_ = null,
 		model_ = null,
 		beats_ = Director.LEAST_BEATS
 	):
@@ -97,6 +99,7 @@ class Performer:
 		self.begun = begun_ if begun_ != null else {}
 		self.served = served_ if served_ != null else {}
 		self.candidates = candidates_ if candidates_ != null else {}
+		self.prominences = prominences_ if prominences_ != null else {}
 		self.model = model_
 		self.beats = beats_
 
@@ -539,14 +542,17 @@ class Performer:
 		var directed = meta.written and self.project.settings.variety > 0
 		if directed:  # the model's limb and tags are wishes, not orders
 			every = self._fresh(meta, every, now)
+			var fresh = []
+			for a in every:
+				fresh.append(a.id)
 			var found6 = []
 			for a in found:
-				if every.has(a):
+				if fresh.has(a.id):
 					found6.append(a)
 			found = found6
 			var found7 = []
 			for a in exact:
-				if every.has(a):
+				if fresh.has(a.id):
 					found7.append(a)
 			exact = found7
 			if every.size() == 0:
@@ -720,9 +726,15 @@ class Performer:
 			return 1.0 + self._count_fresh(action.end_stance, now) if talks else 1.0
 		if not self.ended.has(action.id):
 			return 1.0
-		var shows = Prominence.measure_prominence(self.project, action)
+		var shows = self._shows(action)
 		var needed = Director.repeat_interval(action.kind, shows, self.beats) * variety
 		return Director.freshness(now - self.ended[action.id], needed)
+
+	# Return how much an action stands out.
+	func _shows(action):
+		if not self.prominences.has(action.id):
+			self.prominences[action.id] = Prominence.measure_prominence(self.project, action)
+		return self.prominences[action.id]
 
 	# Return the actions that the character may do by itself; see `director`.
 	func _fresh(meta, candidates, now):
@@ -749,7 +761,7 @@ class Performer:
 		var converses = meta.request.kind == "fidget" and Wanted.mode_at(self.track, now) != "idle"
 		var out = []
 		for action in candidates:
-			var shows = Prominence.measure_prominence(self.project, action)
+			var shows = self._shows(action)
 			if (reminded or converses) and shows >= Director.STANDS_OUT:
 				continue
 			var needed = Director.repeat_interval(action.kind, shows, self.beats) * share
@@ -768,7 +780,7 @@ class Performer:
 			return every
 		var left = []
 		for a in every:
-			if Prominence.measure_prominence(self.project, a) < Director.STANDS_OUT:
+			if self._shows(a) < Director.STANDS_OUT:
 				left.append(a)
 		return left if left.size() > 0 else every
 
@@ -792,7 +804,7 @@ class Performer:
 			return count
 		var variety = self.project.settings.variety
 		for action in self.graph.of(stance, "gesture"):
-			var shows = Prominence.measure_prominence(self.project, action)
+			var shows = self._shows(action)
 			var needed = Director.repeat_interval("gesture", shows, self.beats) * variety
 			if not self.ended.has(action.id) or now >= self.ended[action.id] + needed:
 				count += 1
@@ -815,7 +827,7 @@ class Performer:
 			var action = self.graph.actions.get(ident)
 			if action == null or action.kind == "transition" or end < since:
 				continue
-			if Prominence.measure_prominence(self.project, action) >= Director.STANDS_OUT:
+			if self._shows(action) >= Director.STANDS_OUT:
 				return true
 		return false
 
