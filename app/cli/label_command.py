@@ -155,7 +155,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     place = _free_report(path)
     gaps = [] if options.no_bridges else describe_unbridged(taken.project)
     joined = describe_bridges(taken.project, bridges)
-    lists = {
+    lists: dict[str, Sequence[str]] = {
         "Blended, because no clip leads there": joined,
         "Not joined to the other stances": gaps,
         "Mirrored for the other arm" if options.twins else "Only one arm": [
