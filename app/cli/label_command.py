@@ -155,7 +155,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     place = _free_report(path)
     gaps = [] if options.no_bridges else describe_unbridged(taken.project)
     joined = describe_bridges(taken.project, bridges)
-    lists = {
+    lists: dict[str, Sequence[str]] = {
         "Blended, because no clip leads there": joined,
         "Not joined to the other stances": gaps,
         "Mirrored for the other arm" if options.twins else "Only one arm": [
@@ -237,12 +237,12 @@ def add_twins(project: Project, one_sided: Sequence[OneSided], folder: Path) -> 
     from metagraph.graph.edit_error import EditError
     from metagraph.graph.editing.mirroring import make_twin_clips
 
-    made = []
-    for one in one_sided:
-        for action in one.actions:
-            with suppress(EditError):
-                made += [(twin, write_twin(twin, folder)) for twin in make_twin_clips(project, [action])]
-    return with_twins(project, made) if made else project
+    actions = [action for one in one_sided for action in one.actions]
+    try:
+        made = [(twin, write_twin(twin, folder)) for twin in make_twin_clips(project, actions, skip=True)]
+    except EditError:
+        return project
+    return with_twins(project, made)
 
 
 def _rehearse(options: Namespace, project: Project, path: Path) -> list[Problem]:
@@ -301,7 +301,10 @@ def _told_of_merging(begun: Begun, path: Path) -> tuple[str, dict[str, int]]:
     if begun.skipped:
         words += f"; skipped {begun.skipped} clips that it already has"
     if begun.waiting:
-        words += f"; {begun.waiting} of its clips have no label yet: metagraph label {path}"
+        from app.typed_command import list_program_words, quote_command
+
+        command = quote_command([*list_program_words(), "label", str(path)])
+        words += f"; {begun.waiting} of its clips have no label yet: {command}"
     if not begun.clips:
         words += (
             "; nothing was changed. Add --overwrite to make the project again and keep this one as a version"

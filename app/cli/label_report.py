@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.label_page import SCRIPT, STYLE
-from app.cli.showing_command import list_shared_names, name_window_command, quote_command
+from app.cli.showing_command import list_shared_names, name_window_command
 from app.look.plural import count_clips
 from app.translation import tr_plural
+from app.typed_command import quote_command
 from metagraph.common.xml_text import escape
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.suggest.estimate import Belief

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import shlex
-import subprocess
 from collections import Counter
 from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from app.typed_command import list_program_words, quote_command
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.graph.model import Project
@@ -24,7 +23,8 @@ def name_showing_command(project: Project, problem: Problem, path: Path) -> str:
     action = project.action(problem.action or "")
     if problem.moment is not None:
         start = f"{max(0.0, problem.moment - BEFORE):.1f}"
-        words = ["metagraph", "render", str(path), "--start", start, "-s", f"{LASTS:g}", "-o", "seen.mp4"]
+        shown = ["--start", start, "-s", f"{LASTS:g}", "-o", "seen.mp4"]
+        words = [*list_program_words(), "render", str(path), *shown]
     elif problem.code.startswith(("play-", "clip-jump")) and action and action.clip in project.clips:
         words = name_window_command(project, action.clip, path, list_shared_names(project))
     else:
@@ -42,9 +42,4 @@ def name_window_command(project: Project, clip: str, path: Path, shared: Collect
     name = project.clips[clip].name
     if name.startswith("-") or name in shared:
         name = clip
-    return ["metagraph", "window", str(path), "--clip", name]
-
-
-def quote_command(words: list[str]) -> str:
-    """Return a command as this system's terminal reads it."""
-    return subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)
+    return [*list_program_words(), "window", str(path), "--clip", name]
