@@ -75,6 +75,7 @@ def say(what: str, times: list[float]) -> None:
 
 
 def main(count: int = 1000) -> None:
+    from bench_window import linger
     from PySide6.QtTest import QTest
 
     from app.features.library.library_panel import LibraryPanel
@@ -108,20 +109,20 @@ def main(count: int = 1000) -> None:
         began = time.perf_counter()
         shown = len(list(panel.list.layout_of.rows_in(panel.list.viewport().rect())))
         while len(set(came)) < shown and time.perf_counter() - began < 60:
-            QTest.qWait(10)
+            linger(0.01)
         say(f"{opening} opening: the {shown} pictures in sight", [since(began)])
         strips = []
         for entry in list(project.clips.values())[:8]:
             began = time.perf_counter()
             while not drawn.scrub(entry.id) and time.perf_counter() - began < 20:
-                QTest.qWait(2)
+                linger(0.002)
             strips.append(since(began))
         say(f"{opening} opening: a strip to go through", strips)
         began, bar = time.perf_counter(), panel.list.verticalScrollBar()
         while len(set(came)) < min(500, count) and time.perf_counter() - began < 240:
             at = bar.value()
             while drawn.waiting and bar.value() == at:
-                QTest.qWait(10)
+                linger(0.01)
             bar.setValue(at + bar.pageStep())
             app.processEvents()
         say(f"{opening} opening: {len(set(came))} pictures, page by page", [since(began)])
@@ -146,7 +147,7 @@ def main(count: int = 1000) -> None:
         view.verticalScrollBar().setValue(0)
         for _ in range(120):  # what was scrolled to once has its pictures
             scroll()
-        QTest.qWait(1500)
+        linger(1.5)
         view.verticalScrollBar().setValue(0)
         app.processEvents()
         name = style if style == "columns" else "lines" if side <= 54 else "cards"

@@ -80,11 +80,13 @@ def cold(rounds: int = 5) -> None:
 
 
 def wait(until: Callable[[], bool], seconds: float = 30) -> None:
-    from PySide6.QtWidgets import QApplication
+    from PySide6.QtCore import QEventLoop, QTimer
 
     end = time.monotonic() + seconds
     while not until():
-        QApplication.processEvents()
+        loop = QEventLoop()  # while it waits, other threads get their turn, as in the program
+        QTimer.singleShot(5, loop.quit)
+        loop.exec()
         if time.monotonic() > end:
             raise TimeoutError(str(until))
 
