@@ -1,10 +1,10 @@
 """Place cameras in a conversation: over a shoulder, close, or all speakers from three quarters.
 
 All cameras are on one side of the line between two speakers, so that the one who looks to the right does so
-in every picture (the rule of 180 degrees). Sizes and angles are the usual ones of filmed conversations (over
-the shoulder from the chest up, close from the shoulders up, all from the waist up), as shares of a figure's
-height. A face is large enough to read in each of them: of two speakers, no head is lower than 0.22 of a
-picture of 16:9. The numbers are our own.
+in every picture (the rule of 180 degrees). Sizes and angles are the usual ones of filmed conversations: over
+the shoulder from the hips up, so that gestures are seen, close from the shoulders up, all from the waist up,
+as shares of a figure's height. A face is large enough to read in each of them: of two speakers, no head is
+lower than 0.22 of a picture of 16:9. The numbers are our own.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ Shot = Literal["over", "two", "close"]
 
 # Metres behind and above the head over whose shoulder the camera looks, and from this head to the line of
 # sight that passes it; for a figure of 1.75 m. From so far behind, the head in front is not twice as large.
-BEHIND, BESIDE, ABOVE = 1.55, 0.23, 0.05
+BEHIND, BESIDE, ABOVE = 1.5, 0.38, 0.08
 USUAL = 1.75  # metres; the height of the figure for which those hold
-OVER_TALL, CLOSE_TALL = 0.50, 0.34  # of the height of who is seen; as much of it is in the picture
-OVER_ROOM, OVER_UP = 0.09, 0.10  # of the height; how far the picture's middle is beside and below the face
+OVER_TALL, CLOSE_TALL = 0.58, 0.34
+OVER_ROOM, OVER_UP = 0.07, 0.155
 CLOSE_FOV, TWO_FOV = math.radians(22.0), math.radians(16.0)
 # Of the height: from the head to the ends of the picture of all, below, above and on the sides.
 TWO_BELOW, TWO_ABOVE, TWO_BESIDE = 0.33, 0.08, 0.11

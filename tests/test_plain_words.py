@@ -115,6 +115,8 @@ FRONT_DOORS = (
     "metagraph/formats/locking.py",
     "metagraph/formats/outputs.py",
     "metagraph/formats/recovery.py",
+    "metagraph/formats/project/clip_loading.py",
+    "metagraph/formats/project/paths.py",
     "metagraph/formats/store.py",
     "metagraph/formats/stray_poses.py",
     "metagraph/formats/takes.py",

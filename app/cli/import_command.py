@@ -66,8 +66,11 @@ def _taken(project: Project, path: Path, other: Path, options: Namespace) -> tup
 
 def run(options: Namespace) -> int:
     if not options.paths and options.labels is None:
+        from app.typed_command import list_program_words, quote_command
+
         print(
-            "metagraph import: give clips or a folder, such as: metagraph import my.metagraph.yaml clips/",
+            "metagraph import: give clips or a folder, such as: "
+            f"{quote_command(list_program_words())} import my.metagraph.yaml clips/",
             file=sys.stderr,
         )
         return 2

@@ -139,10 +139,13 @@ def write_mismatched(options: Namespace, make: Callable[[Namespace], int]) -> in
     if options.into is not None:
         options.plan = options.out
         return make(options)
+    from app.typed_command import list_program_words, quote_command
+
+    command = quote_command([*list_program_words(), "study", "perceive", "make", str(options.out)])
     say(
         options,
         f"{options.out}: {len(systems)} systems, {len(plan.items)} stretches. Render it with: "
-        f"metagraph study perceive make {options.out} --into FOLDER",
+        f"{command} --into FOLDER",
         {"plan": str(options.out), "systems": list(systems), "items": len(plan.items)},
     )
     return 0

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from metagraph.engines.script_parts import ScriptCase, ScriptStep, ask, make_case
 from metagraph.graph.model import Project
+from metagraph.playback.planning.director import musing
 
 ALIVE = (True,)  # the life layers are on
 
@@ -110,6 +111,8 @@ def list_life_cases(project: Project) -> Iterator[ScriptCase]:
         times=(0.9, 1.03, 1.1, 9.0, 21.5, 33.3, 36.3),
         alive=ALIVE,
     )
+    if musing(project.graphs["arms"].stances) != "":
+        yield _thoughts()
     yield _said()
     yield from _timed_lines()
     yield _cut_short()
@@ -133,6 +136,25 @@ def list_life_cases(project: Project) -> Iterator[ScriptCase]:
         150.0,
         seed=6,
         idle=True,
+    )
+
+
+def _thoughts() -> ScriptCase:
+    """Return thoughts: long ones, one too short to lift a hand, one amid a stay."""
+    modes = (
+        ("thinking", 5.0), ("talking", 20.0), ("thinking", 34.0), ("listening", 35.5), ("thinking", 50.0),
+        ("talking", 62.0), ("thinking", 80.0), ("idle", 95.0),
+    )  # fmt: skip
+    asks = [ask(f"m{n}", "mode", at, mode=mode) for n, (mode, at) in enumerate(modes)]
+    asks.append(ask("s", "stance", 74.0, layer="arms", stance="at sides", stay=True))
+    return make_case(
+        "thoughts",
+        "a hand goes to the chin in a long thought, and home after it; bursts of gestures and rests",
+        asks,
+        120.0,
+        idle=True,
+        times=(9.0, 15.3, 22.4, 41.7, 66.6, 90.2),
+        alive=ALIVE,
     )
 
 

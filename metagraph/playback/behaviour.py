@@ -15,6 +15,7 @@ from statistics import fmean, median, pstdev
 from metagraph.common.wording import Phrase, phrase, plural_phrase
 from metagraph.graph.model import LAYERS, Kind, Layer, Mode, Project
 from metagraph.playback.plan import Cue, Plan
+from metagraph.playback.planning.director import LEAST_LULL, MOST_LULL
 from metagraph.playback.planning.running_plan import improvise
 
 HOUR = 3600.0
@@ -193,6 +194,9 @@ def _rests(plan: Plan, seconds: float) -> list[BehaviourRow]:
     cues = plan.layers["arms"].cues
     rests = [b.start - a.end for a, b in pairwise(cues)] or [seconds]
     gaps = [b.start - a.start for a, b in pairwise(cues)] or [seconds]
+    longer = [rest for rest in rests if rest >= LEAST_LULL] or [seconds]
+    moves = [cue.start for cue in cues if cue.action.kind == "transition"]
+    kept = [b - a for a, b in pairwise((0.0, *moves, seconds))]
     second = phrase("s")
     return [
         BehaviourRow(phrase("Half of the rests of the arms are shorter than"), median(rests), second),
@@ -201,6 +205,14 @@ def _rests(plan: Plan, seconds: float) -> list[BehaviourRow]:
             sorted(rests)[int(0.9 * (len(rests) - 1))],
             second,
         ),
+        BehaviourRow(
+            phrase("Half of those of {seconds:.0f} s and more are shorter than", seconds=LEAST_LULL),
+            median(longer),
+            second,
+            LEAST_LULL,
+            MOST_LULL,
+        ),
+        BehaviourRow(phrase("Half of the stances of the arms are kept for less than"), median(kept), second),
         BehaviourRow(
             phrase("Spread of the time between acts of the arms"),
             pstdev(gaps) / fmean(gaps),

@@ -1,13 +1,10 @@
-"""Return poses of a plan with one call, for scripts. Code that uses many plans keeps an evaluator
-for each.
+"""Return poses of a plan with one call, for scripts: those that others wrote ask for poses by these names.
+Code of our own keeps an evaluator for each plan.
 """
 
 from __future__ import annotations
 
 from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
@@ -35,13 +32,6 @@ def compute_morphs_at(
     `pose_at` does.
     """
     return _evaluator(plan, project).morphs_at(seconds, alive, composed)
-
-
-def compose_layers(plan: Plan, project: Project, times: NDArray[Any]) -> Pose:
-    """Return what only the layers compose at `times [N]`, without life, weight and contacts. Raises
-    ValueError as `pose_at` does.
-    """
-    return _evaluator(plan, project).layered(np.asarray(times, np.float64))
 
 
 def _evaluator(plan: Plan, project: Project) -> Evaluator:

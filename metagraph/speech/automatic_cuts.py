@@ -28,6 +28,7 @@ LONG = 7.0  # seconds of one picture of a speaker after which it goes closer, or
 SILENCE = 3.0  # seconds without a word in which all are seen
 REACTION = 1.8  # seconds that a listener is seen
 ANSWER = 0.35  # seconds before its answer at which it is cut to a listener
+ANSWERED = 0.8  # seconds at least, from an answer between two turns of one speaker, that it is seen
 BEFORE = 2.0  # seconds that a speaker is seen before it is cut to a listener's answer
 UNSEEN = 12.0  # seconds of one speaker after which the listener is seen without an answer
 
@@ -93,6 +94,8 @@ def make_automatic_cuts(conversation: Conversation) -> tuple[Cut, ...]:
         if not both:
             _cut_within(conversation, turn, begin, min(turn.end, after), cut)
         until = max(until, turn.end)
+        if n + 1 < len(found) and found[n + 1].side == side:
+            _cut_to_answer(conversation, turn, after, cut)
     said = [(s.start, s.end, n) for n, of in enumerate(conversation.sides) for s in of.segments]
     after_all = min((s for s in said if s[0] > until), default=None)
     if after_all is not None:  # a last answer in passing
@@ -102,6 +105,21 @@ def make_automatic_cuts(conversation: Conversation) -> tuple[Cut, ...]:
     if conversation.length - until > SILENCE:
         cut(until + 1.0, "two", 0)
     return tuple(cuts)
+
+
+def _cut_to_answer(
+    conversation: Conversation, turn: FloorTurn, after: float, cut: Callable[[float, Shot, int], None]
+) -> None:
+    """Cut to who answers in passing before the same speaker goes on. after: when that is."""
+    answers = sorted(
+        (s.start - EARLY, n)
+        for n, side in enumerate(conversation.sides)
+        if n != turn.side
+        for s in side.segments
+        if s.kind == "response" and turn.end - 0.5 <= s.start and s.start + ANSWERED < after
+    )
+    if answers:
+        cut(answers[0][0], "over", answers[0][1])
 
 
 def _cut_within(

@@ -20,6 +20,7 @@ from metagraph.graph.requests import (
     Change,
     Fidget,
     Gesture,
+    Go,
     Look,
     Nod,
     Performance,
@@ -33,6 +34,7 @@ from metagraph.playback.planning.choice import uniform
 from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.playback.timing.phases import find_phases
 from metagraph.speech.addressing import TURN, find_speaking_spans
+from metagraph.speech.arm_stances import ArmStances, place_arm_stances
 from metagraph.speech.gesture_choice import GestureClause, choose_gestures
 from metagraph.speech.group_gaze import list_looks
 from metagraph.speech.mode_spans import list_modes
@@ -47,6 +49,7 @@ HEAD: Point = (0.0, 1.6, 1.3)  # metres: where a partner's head is if its height
 PLAIN = ("beat", "explain", "open")  # tags of gestures that go with any words
 REST = 3.5  # seconds without requests after which a character may fidget
 FIDGETS = 0.5  # how often it does
+ECHO = 6.0  # seconds before and after a gesture of another side in which none of its name is chosen
 # how often the body changes its stance when its side begins to speak, where most shifts of posture are
 # (Cassell et al. 2001)
 SHIFTS = 0.4
@@ -59,11 +62,13 @@ def drive_side(
     line: str | None = None,
     heads: Sequence[Point] = (HEAD,),
     together: bool = True,
+    others: Sequence[Plan] = (),
 ) -> list[AnyRequest]:
     """Return the requests for a side. `project` has the graph that moves it. `line` is the project's line
     with its voice. `heads` says where the others' heads are, in metres in this side's space, in the order of
     their numbers; the last is used for missing ones. With `together`, gestures are chosen so that all have
-    room; otherwise each is requested on its own, and many cannot be played.
+    room; otherwise each is requested on its own, and many cannot be played. `others` are plans of other sides
+    whose gestures are not echoed.
     """
     out = list(_looks(conversation, side, heads))
     if line is not None:
@@ -78,16 +83,18 @@ def drive_side(
         out += [Blink(id=f"blink {n}", at=at) for n, at in enumerate(found)]
     kinds = {layer: {kind for _, kind in project.graphs[layer].index} for layer in project.graphs}
     nods = "gesture" in kinds["head"]
-    heard, said = list_segments_heard_by(conversation, side), _meanings(project)
+    heard = list_segments_heard_by(conversation, side)
+    arms = place_arm_stances(conversation, side, project.graphs["arms"])
+    meanings = {stance: _meanings(project, stance) for stance in dict.fromkeys(arms.stances)}
     busy = [(s.start, s.end) for s in conversation.sides[side].segments]
     drawn = draw_segments(conversation, side)
     tags = {
-        key: _tags(said, s.text, uniform(conversation.seed, str(side), key, "tags"))
+        key: _tags(meanings[arms.at(s.start)], s.text, uniform(conversation.seed, str(side), key, "tags"))
         for key, s in key_segments(heard)
         if s.kind == "clause"
     }
     if together and "gesture" in kinds["arms"]:
-        out += _chosen(conversation, side, project, drawn, tags)
+        out += _chosen(conversation, side, project, arms, drawn, tags, others)
     for key, s in key_segments(heard):
         if key not in drawn:
             continue
@@ -111,14 +118,24 @@ def drive_side(
                 out.append(
                     Change(id=f"shift {n}", at=max(0.0, round(start - 0.3, 3)), layer="body", priority=FILL)
                 )
+    for n, (at, stance) in enumerate(zip(arms.starts, arms.stances, strict=True)):
+        if n > 0:
+            out.append(Go(id=f"arms {n}", at=at, layer="arms", stance=stance, priority=FILL))
+            busy.append((at, at + REST))
+    layer: Layer = "arms" if "fidget" in kinds["arms"] else "body"
+    return [*out, *(_fidgets(conversation, side, busy, layer) if "fidget" in kinds[layer] else ())]
+
+
+def _fidgets(
+    conversation: Conversation, side: int, busy: Sequence[tuple[float, float]], layer: Layer
+) -> Iterator[Fidget]:
+    """Yield fidgets of a side where nothing else is requested."""
     for n, (start, end) in enumerate(_gaps(sorted(busy), conversation.length)):
-        layer: Layer = "arms" if "fidget" in kinds["arms"] else "body"
-        if "fidget" in kinds[layer] and uniform(conversation.seed, str(side), f"fidget {n}") < FIDGETS:
+        if uniform(conversation.seed, str(side), f"fidget {n}") < FIDGETS:
             at = start + (0.2 + 0.5 * uniform(conversation.seed, str(side), f"when {n}")) * (
                 end - start - 2.0
             )
-            out.append(Fidget(id=f"fidget {n}", at=round(at, 3), layer=layer, priority=FILL))
-    return out
+            yield Fidget(id=f"fidget {n}", at=round(at, 3), layer=layer, priority=FILL)
 
 
 def _looks(conversation: Conversation, side: int, heads: Sequence[Point]) -> Iterator[AnyRequest]:
@@ -161,25 +178,36 @@ def _chosen(
     conversation: Conversation,
     side: int,
     project: Project,
+    arms: ArmStances,
     drawn: Collection[str],
     tags: Mapping[str, tuple[str, ...]],
+    others: Sequence[Plan],
 ) -> Iterator[AnyRequest]:
     """Yield the gestures that go with a side's clauses: by what they should mean if any such gesture has
     room, else by name.
     """
     graph = project.graphs["arms"]
-    stance = graph.start if graph.start is not None else next(iter(graph.stances), "")
-    every = [a for a in graph.of(stance, "gesture") if a.likelihood > 0]
-    every = [a for a in every if a.cooldown <= 0] or every
+    usable: dict[str, list[Action]] = {}
+    for stance in arms.stances:
+        every = [a for a in graph.of(stance, "gesture") if a.likelihood > 0]
+        usable[stance] = [a for a in every if a.cooldown <= 0] or every
+    theirs = [c for plan in others for c in plan.layers["arms"].cues if c.action.kind == "gesture"]
     said = [
         (key, s) for key, s in key_segments(list_segments_heard_by(conversation, side)) if s.kind == "clause"
     ]
     clauses = [
-        GestureClause(key, find_clause_peak(s), key in drawn, _fitting(every, tags[key])) for key, s in said
+        GestureClause(
+            key,
+            find_clause_peak(s),
+            key in drawn,
+            _fitting(usable[arms.at(s.start)], tags[key]),
+            frozenset(c.action.name for c in theirs if c.start - ECHO < find_clause_peak(s) < c.end + ECHO),
+        )
+        for key, s in said
     ]
     for one in choose_gestures(project, clauses, conversation.seed, conversation.length):
         (key, s), clause = said[one.clause], clauses[one.clause]
-        if one.free and clause.wanted:
+        if one.free and clause.wanted and not clause.echoes:
             meant = tags[key] if set(tags[key]) - set(PLAIN) else one.action.tags
             meant = tuple(tag for tag in meant if tag in (*PLAIN, *tags[key]))[:1]
             yield Gesture(id=key, at=s.start, stroke=clause.peak, tags=meant, priority=CLAUSE)
@@ -197,10 +225,9 @@ def _fitting(every: Sequence[Action], tags: Collection[str]) -> Sequence[Action]
     return [a for a in every if set(tags) <= set(a.tags)] or every
 
 
-def _meanings(project: Project) -> Counter[str]:
-    """Return the tags of the gestures in the stance that the arms begin in, and how many have each."""
+def _meanings(project: Project, stance: str) -> Counter[str]:
+    """Return the tags of the gestures in a stance of the arms, and how many have each."""
     graph = project.graphs["arms"]
-    stance = graph.start if graph.start is not None else next(iter(graph.stances), "")
     return Counter(tag for action in graph.of(stance, "gesture") for tag in action.tags)
 
 
@@ -229,13 +256,14 @@ def drive(
     heads: Sequence[Point] = (HEAD,),
     together: bool = True,
     more: Sequence[AnyRequest] = (),
+    others: Sequence[Plan] = (),
 ) -> tuple[Performance, Plan]:
     """Return what a side performs, and its plan. Gestures whose stroke would miss its peak because another
     still plays are removed. The arguments are as for `drive_side`; `more` are additional requests.
 
     Performing the same requests again gives the same plan.
     """
-    asks = [*drive_side(conversation, side, project, line, heads, together), *more]
+    asks = [*drive_side(conversation, side, project, line, heads, together, others), *more]
     plan = Plan(conversation.seed, 0.0)
     for _ in range(ROUNDS):
         plan = plan_performance(project, asks, conversation.length, conversation.seed, idle=False)

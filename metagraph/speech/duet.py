@@ -159,7 +159,7 @@ def plan_duet(
             else places[n].own(places[m].world(_eyes(projects[m])))
             for m in list_other_sides(conversation, n)
         )
-        performance, plan = drive(conversation, n, *known, heads)
+        performance, plan = drive(conversation, n, *known, heads, others=[m.plan for m in movers])
         driven.append((known, heads, performance))
         movers.append(Mover(n, known[0], plan))
     parts = []
@@ -170,7 +170,8 @@ def plan_duet(
             *list_sympathies(conversation, movers[n], others),
         )
         if taken_up:
-            performance, plan = drive(conversation, n, *known, heads, more=taken_up)
+            before = [m.plan for m in movers[:n]]
+            performance, plan = drive(conversation, n, *known, heads, more=taken_up, others=before)
         told = count_delivered(conversation, n, known[0], plan)
         looks = measure_gaze_shares(conversation, n, known[0], plan)
         parts.append(DuetPart(known[0], performance, plan, places[n], told, looks))

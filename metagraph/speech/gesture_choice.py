@@ -20,6 +20,8 @@ from numpy.typing import NDArray
 from metagraph.graph.model import Action, Project
 from metagraph.playback.planning.choice import uniform
 from metagraph.playback.planning.cue_shapes import HURRY
+from metagraph.playback.planning.director import beat_interval, repeat_interval
+from metagraph.playback.planning.prominence import measure_prominence
 from metagraph.playback.timing.phases import find_phases
 
 Array = NDArray[Any]
@@ -32,7 +34,9 @@ CUT, HURRIED, KEPT = (
     0.1,
     0.1,
 )  # what a cut preparation and a hurried hold cost, and a second of longer hold
-AGAIN = 0.4  # what the same gesture twice in a row costs
+AGAIN = 0.6  # what the same gesture twice in a row costs; less the longer ago it was
+ECHOED = 0.4  # what a gesture costs that somebody else makes at that time
+RETRIES = 4  # how often a turn is chosen again to repeat less
 CHANCE = 0.06  # how much chance, and by it likelihoods, weigh
 LONGEST_HOLD = 1.6  # seconds a hold is kept up at most
 AFTER = 0.1  # seconds a hold goes on after a peak it is kept for
@@ -44,13 +48,14 @@ BACK = 12  # clauses that a gesture may reach over, at most
 @dataclass(frozen=True, slots=True)
 class GestureClause:
     """A clause that may get a gesture. key: of its draws. peak: seconds. wanted: whether one was drawn for
-    it. actions: those that go with its words.
+    it. actions: those that go with its words. echoes: names of gestures that others make about then.
     """
 
     key: str
     peak: float
     wanted: bool
     actions: Sequence[Action]
+    echoes: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,26 +102,104 @@ def choose_gestures(
     are. The arms stay in one stance.
     """
     known: dict[str, _Lengths] = {}
+    used = _UsedGestures(project)
     out: list[ChosenGesture] = []
     first = 0
     for n in range(1, len(clauses) + 1):
         if n == len(clauses) or clauses[n].peak - clauses[n - 1].peak >= APART:
-            out += _of_turn(project, clauses, first, n, seed, length, known, out[-1] if out else None)
+            begun = out[-1].end + project.settings.rest if out else 0.0
+            found = _of_turn(project, clauses[first:n], seed, length, known, begun, used)
+            out += [replace(o, clause=o.clause + first, last=o.last + first) for o in found]
+            for one in found:
+                used.note(one.action, clauses[one.clause + first].peak)
             first = n
     return _freed(project, clauses, out, known)
 
 
+class _UsedGestures:
+    """What it costs to make gestures again, by when each was made last."""
+
+    def __init__(self, project: Project) -> None:
+        self._project, self._last, self._needed = project, dict[str, float](), dict[str, float]()
+        gestures = [a for a in project.graphs["arms"].actions.values() if a.kind == "gesture"]
+        self._beats = beat_interval("arms", len(gestures))
+
+    def note(self, action: Action, at: float) -> None:
+        """Note that a gesture's stroke is at a time."""
+        self._last[action.id] = at
+
+    def cost(self, action: Action, at: float, last: float | None = None) -> float:
+        """Return what a gesture costs whose stroke is at a time. last: when it was made before; None for
+        when it was noted.
+        """
+        before = self._last.get(action.id) if last is None else last
+        if before is None or self._project.settings.variety <= 0:
+            return 0.0
+        if action.id not in self._needed:
+            shows = measure_prominence(self._project, action)
+            needed = repeat_interval("gesture", shows, self._beats)
+            self._needed[action.id] = needed * self._project.settings.variety
+        return AGAIN * max(0.0, 1.0 - (at - before) / self._needed[action.id])
+
+
 def _of_turn(
-    project: Project, clauses: Sequence[GestureClause], first: int, last: int, seed: int, length: float,
-    known: dict[str, _Lengths], before: ChosenGesture | None,
+    project: Project, turn: Sequence[GestureClause], seed: int, length: float,
+    known: dict[str, _Lengths], begun: float, used: _UsedGestures,
 ) -> list[ChosenGesture]:  # fmt: skip
-    """Return the gestures of clauses that nothing parts, first to last (exclusive): where too few of those
-    that were drawn have room, others make up for them.
+    """Return the gestures of clauses that nothing parts: chosen again with what repeats made dearer, as long
+    as that repeats less and serves as many clauses. begun: seconds before which none may play.
     """
-    turn = clauses[first:last]
+    tried = [_tried(project, clause, seed, known, used) for clause in turn]
+    costs = {
+        (n, action.id): used.cost(action, clause.peak) + ECHOED * (action.name in clause.echoes)
+        for n, (clause, actions) in enumerate(zip(turn, tried, strict=True))
+        for action in actions
+    }
+    best = _best_of_turn(project, turn, tried, costs, seed, length, known, begun)
+    repeated = _repeated(turn, best, used)
+    for _ in range(RETRIES):
+        if not repeated:
+            break
+        for key, cost in repeated.items():
+            costs[key] = costs[key] + cost
+        found = _best_of_turn(project, turn, tried, costs, seed, length, known, begun)
+        again = _repeated(turn, found, used)
+        if _count_clauses(found) < _count_clauses(best) or sum(again.values()) >= sum(repeated.values()):
+            break
+        best, repeated = found, again
+    return best
+
+
+def _repeated(
+    turn: Sequence[GestureClause], found: Sequence[ChosenGesture], used: _UsedGestures
+) -> dict[tuple[int, str], float]:
+    """Return what repeats within a turn cost, by clause and action."""
+    out: dict[tuple[int, str], float] = {}
+    made: dict[str, float] = {}
+    for one in found:
+        at = turn[one.clause].peak
+        if one.action.id in made:
+            cost = used.cost(one.action, at, made[one.action.id])
+            if cost > 0:
+                out[one.clause, one.action.id] = cost
+        made[one.action.id] = at
+    return out
+
+
+def _count_clauses(found: Sequence[ChosenGesture]) -> int:
+    return sum(one.last - one.clause + 1 for one in found)
+
+
+def _best_of_turn(
+    project: Project, turn: Sequence[GestureClause], tried: Sequence[Sequence[Action]],
+    costs: Mapping[tuple[int, str], float], seed: int, length: float, known: dict[str, _Lengths],
+    begun: float,
+) -> list[ChosenGesture]:  # fmt: skip
+    """Return the gestures that are worth most together: where too few of those that were drawn have room,
+    others make up for them. costs: of each action for each clause.
+    """
     drawn = sum(c.wanted for c in turn)
     best: list[ChosenGesture] = []
-    tried = [_tried(project, clause, seed, known) for clause in turn]
     for unasked in UNASKED:
         options: list[ChosenGesture] = []
         worth: list[float] = []
@@ -124,20 +207,18 @@ def _of_turn(
         for n, actions in enumerate(tried):
             for action in actions:
                 for option, value in _options(turn, n, action, known[action.id], seed, length, unasked):
-                    again = n == 0 and before is not None and before.action.id == action.id
                     options.append(option)
-                    worth.append(value - AGAIN * again)
+                    worth.append(value - costs[n, action.id])
             firsts.append(len(options))
         if not options:
             break
-        begun = 0.0 if before is None else before.end + project.settings.rest
         places = _best(options, np.array(worth), firsts, known, turn, project.settings.rest, begun)
         found = [options[o] for o in places]
-        if sum(o.last - o.clause + 1 for o in found) > sum(o.last - o.clause + 1 for o in best):
+        if _count_clauses(found) > _count_clauses(best):
             best = found
-        if sum(o.last - o.clause + 1 for o in best) >= drawn:
+        if _count_clauses(best) >= drawn:
             break
-    return [replace(o, clause=o.clause + first, last=o.last + first) for o in best]
+    return best
 
 
 def _lengths(project: Project, action: Action) -> _Lengths:
@@ -151,13 +232,22 @@ def _lengths(project: Project, action: Action) -> _Lengths:
     )
 
 
-def _tried(project: Project, clause: GestureClause, seed: int, known: dict[str, _Lengths]) -> list[Action]:
-    """Return the actions to try for a clause: drawn by likelihood, and the shortest."""
+def _tried(
+    project: Project, clause: GestureClause, seed: int, known: dict[str, _Lengths], used: _UsedGestures
+) -> list[Action]:
+    """Return the actions to try for a clause: drawn by likelihood and by when they were made last, and the
+    shortest.
+    """
     for action in clause.actions:
         if action.id not in known:
             known[action.id] = _lengths(project, action)
     usable = [a for a in clause.actions if a.likelihood > 0]
-    drawn = sorted(usable, key=lambda a: log(uniform(seed, clause.key, "gesture", a.id)) / a.likelihood)[::-1]
+    drawn = sorted(
+        usable,
+        key=lambda a: (
+            log(uniform(seed, clause.key, "gesture", a.id)) / a.likelihood - used.cost(a, clause.peak)
+        ),
+    )[::-1]
     short = sorted(usable, key=lambda a: known[a.id].shortest)[:SHORT]
     return list({a.id: a for a in (*drawn[:CHOICES], *short)}.values())
 

@@ -86,11 +86,11 @@ CLIPS = (
         "gesture",
         "beat_small",
         "bt",
-        go(0.34, **both(0.045, 0.02), head=(-2, 0, 0), spine=(0, 0, 0), overshoot=0.0, flow=0.06),
+        go(0.38, **both(0.085, 0.035), head=(-3, 0, 0), spine=(-1, 0, 0), overshoot=0.0, flow=0.06),
         go(
-            0.24, hold=0.30, **both(-0.018, 0.022), head=(3, 0, 0), spine=(3, 0, 0), peak=0.55, overshoot=0.10
+            0.27, hold=0.30, **both(-0.024, 0.030), head=(4, 0, 0), spine=(4, 0, 0), peak=0.55, overshoot=0.10
         ),
-        home(0.6),
+        home(0.65),
         tags="beat",
         together=True,
         pins=CLASPED,

@@ -311,7 +311,7 @@ LEANING = (
         go(
             0.28,
             hold=0.36,
-            **off("weight_left", (0.002, -0.012, 0.006), (2, -2, 0.5), (5, -2, 0), (0, 2, 0)),
+            **off("weight_left", (0.002, -0.036, 0.006), (5, -2, 0.5), (10, -2, 0), (-5, 2, 0)),
             peak=0.52,
             overshoot=0.07,
         ),
@@ -323,8 +323,10 @@ LEANING = (
         "weight_left",
         "gesture",
         "turn_away",
-        go(0.46, hold=0.5, **off("weight_left", (0.006, -0.002, -0.004), (0, 5, 0), (-2, 9, -1), (1, -7, 1))),
-        home(0.95),
+        go(
+            0.52, hold=0.6, **off("weight_left", (0.008, -0.004, -0.008), (0, 11, 0), (-3, 20, -2), (1, 9, 1))
+        ),
+        home(1.05),
         tags="other aside",
     ),
     body_clip(
@@ -387,7 +389,7 @@ LEANING = (
         go(
             0.27,
             hold=0.34,
-            **off("weight_right", (-0.002, -0.013, 0.006), (2, 2, -0.5), (5.5, 2, 0), (0, -2, 0)),
+            **off("weight_right", (-0.002, -0.037, 0.006), (5, 2, -0.5), (10.5, 2, 0), (-5, -2, 0)),
             peak=0.52,
             overshoot=0.07,
         ),
@@ -402,7 +404,7 @@ LEANING = (
         go(
             0.56,
             hold=0.55,
-            **off("weight_right", (-0.010, -0.012, 0.030), (-6, -3, -0.5), (-12, -6, 3), (11, 6, -4)),
+            **off("weight_right", (-0.010, -0.014, 0.036), (-7, -1, -0.5), (-15, -1, 1), (12, 1, -2)),
         ),
         home(0.95),
         tags="doubt negative",
@@ -437,7 +439,7 @@ LEANING = (
         ),
         *(
             step
-            for degrees in (17, 15, 18, 16)
+            for degrees in (31, 28, 32, 29)
             for step in (
                 go(0.17, left_foot=on_its_heel(RIGHT.left_foot, degrees), overshoot=0.0, flow=0.02),
                 go(0.16, hold=0.07, left_foot=RIGHT.left_foot, overshoot=0.0),

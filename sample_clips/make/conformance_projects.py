@@ -458,6 +458,8 @@ def varied() -> Project:
     and a morph face.
     """
     project = with_morphs(stick("varied", MORPHS), MORPHS)
+    crossed = next(s.id for s in project.graphs["arms"].stances.values() if s.name == "crossed")
+    project = edits.rename_stance(project, crossed, "hand to chin")  # where the arms go in a thought
     project = edits.set_settings(
         project,
         alpha=1.5,

@@ -2,7 +2,7 @@
 
     .venv/bin/python tests/benchmarks/bench_moods.py [PROJECT]
 
-The sample project, or another. Over seeds, two minutes of what the models perform, in five steps of arousal
+The sample project, or another. Over seeds, two minutes of a character that talks, in five steps of arousal
 at no valence, and of valence at no arousal: the hands' mean speed, acceleration and jerk seen from the chest
 (what goes with arousal in Pollick et al. 2001), how far from their stance they are when a gesture plays
 (extent, as in Laban's kinesphere; Wallbott 1998), how high, gestures a minute, how far the head hangs
@@ -27,9 +27,9 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Feel, Gesture
 from metagraph.playback.plan import Plan
-from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.extend_performance import hear_asks
 from metagraph.playback.planning.mood import MOODS
+from metagraph.playback.planning.running_plan import improvise
 from metagraph.playback.timing.phases import find_phases
 from tests.posing import pose_at
 
@@ -55,8 +55,8 @@ def feeling(project: Project, valence: float, arousal: float) -> Project:
 
 
 def measured(project: Project, seed: int) -> list[float]:
-    """Return what `MEASURES` names of two minutes of what the models perform."""
-    plan = make_plan(project, SECONDS, seed=seed)
+    """Return what `MEASURES` names of two minutes of a character that talks: only then it gestures."""
+    plan = improvise(project, SECONDS, seed, "talking")
     times = np.arange(0, SECONDS, 1 / FPS)
     skeleton, roles = project.skeleton, anatomy.project_roles(project)
     assert skeleton is not None

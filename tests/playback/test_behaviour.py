@@ -73,10 +73,11 @@ def test_a_repetition_is_counted_within_its_time_alone(sample: Project) -> None:
 
 
 def test_a_stance_lacks_as_many_actions_as_would_end_the_repetition(sample: Project) -> None:
-    """Of a stance's gestures all but one are taken away; what is missed then names it."""
+    """Of all stances' gestures all but one are taken away; what is missed then names the stance."""
     arms = sample.graphs["arms"]
-    gestures = [a.id for a in arms.of(arms.start or "", "gesture")]
-    poor = edits.remove_actions(sample, gestures[1:])
+    poor = edits.remove_actions(
+        sample, [a.id for stance in arms.stances for a in arms.of(stance, "gesture")[1:]]
+    )
     found = [x for x in measure_behaviour(poor, "talking", SECONDS).lacks if x.stance == arms.start]
     assert found and found[0].have == 1 and found[0].more >= 1
     assert "'hands at sides' would end the repetition; it has 1" in describe_lack(poor, found[0])

@@ -53,6 +53,15 @@ def test_a_listener_without_a_word_is_seen_after_a_while():
     ]  # fmt: skip
 
 
+def test_who_answers_between_two_turns_of_one_speaker_is_seen():
+    some = talk([("clause", 3.0, 7.0), ("clause", 9.2, 13.0)], [("response", 7.4, 8.0)], length=14.0)
+    assert [(x.at, x.shot, x.side) for x in c.make_automatic_cuts(some)] == [
+        (0.0, "two", 0), (2.88, "over", 0), (7.28, "over", 1), (8.88, "over", 0),
+    ]  # fmt: skip
+    near = talk([("clause", 3.0, 7.0), ("clause", 8.3, 13.0)], [("response", 7.6, 8.0)], length=14.0)
+    assert [x.side for x in c.make_automatic_cuts(near)] == [0, 0], "there is no time for it"
+
+
 def test_who_thinks_before_an_answer_is_seen_thinking():
     some = talk([("clause", 3.0, 7.0)], [("clause", 9.0, 12.0)], length=13.0)
     assert c.make_automatic_cuts(some)[-1].at == 7.8

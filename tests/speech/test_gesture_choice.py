@@ -101,7 +101,10 @@ def test_the_choice_is_worth_as_much_as_the_best_of_all(
     values = {
         (o.clause, o.action.id, o.hold): v for row in choices for x in row if x is not None for o, v in [x]
     }
-    with mock.patch.object(gesture_choice, "UNASKED", gesture_choice.UNASKED[:1]):
+    with (
+        mock.patch.object(gesture_choice, "UNASKED", gesture_choice.UNASKED[:1]),
+        mock.patch.object(gesture_choice, "RETRIES", 0),
+    ):
         chosen = choose_gestures(sample, clauses, seed)
     found = [(o, values[o.clause, o.action.id, o.hold]) for o in chosen]
     assert worth(found) == pytest.approx(max(best, 0.0), abs=1e-9)

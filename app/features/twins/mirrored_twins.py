@@ -14,7 +14,7 @@ from metagraph.common.file_names import make_file_stem
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.imports import Loaded
-from metagraph.formats.store import make_path_relative
+from metagraph.formats.project.paths import make_path_relative
 from metagraph.formats.takes import REPAIRS
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.fitting_twins import fit_twins

@@ -33,7 +33,9 @@ THRUST = {"spine": 6.0, "chest": 6.0, "upper_chest": 4.0, "neck": 6.0, "head": -
 # grows with the square of small angles, so a glance moves the trunk by a degree, and a look far aside turns
 # it along.
 SHARES = {"spine": 0.08, "chest": 0.08, "upper_chest": 0.08, "neck": 0.30, "head": 0.46}
-PARTNER_AWAY = 1.2  # metres ahead, at the height of the eyes: where "user" is unless somebody says otherwise
+# Metres ahead, at the height of the eyes, where "user" is unless somebody says otherwise; as much farther as
+# a figure is larger than `LARGE` metres, whose head would pass by it.
+PARTNER_AWAY, LARGE = 1.2, 2.4
 # Where the eyes are, seen from the head's joint, in heights of the figure: up, ahead, to each side.
 EYE_UP, EYE_AHEAD, EYE_SIDE = 0.055, 0.05, 0.018
 
@@ -201,7 +203,7 @@ def find_body(project: Project) -> Body:
         _vector(local(trunk, ahead)),
         _vector(local(top, ahead)),
         eyes,
-        _vector(rest + PARTNER_AWAY * ahead),
+        _vector(rest + PARTNER_AWAY * max(1.0, skeleton.height / LARGE) * ahead),
         _vector(rest),
         face,
     )

@@ -38,7 +38,7 @@ from metagraph.playback.life.expressions import FaceShown, answer, settle, shown
 from metagraph.playback.life.gaze import BodyGaze, Moves, ease_gaze
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.lips import compute_mouth_shapes
-from metagraph.playback.life.schedule import Schedule
+from metagraph.playback.life.schedule import HALF, Schedule
 from metagraph.playback.life.solve import FaceLids, LifeDials, LifeNow, solve_life
 from metagraph.playback.life.track import Track
 from metagraph.playback.planning.mood import Bearing, bearing, shut_in
@@ -219,7 +219,8 @@ def compute_blink(lane: Lane, life: Life, time: float) -> float:
     n = bisect_right(starts, time) - 1
     while n >= 0 and time - starts[n] < whole:  # a slow one may still be opening when the next begins
         gone = time - starts[n]
-        out = max(out, ease_gaze(min(gone / life.blink_close, (whole - gone) / life.blink_open)))
+        far = HALF if lane.rows[n][0] == 3.0 else 1.0
+        out = max(out, far * ease_gaze(min(gone / life.blink_close, (whole - gone) / life.blink_open)))
         n -= 1
     return out
 

@@ -40,6 +40,8 @@ AFTER_BLINK = 1.0
 BLINK_SPREAD = 0.7  # standard deviation of the gaps, times their mean
 DOUBLES = 0.06  # share of blinks that follow the one before at once
 DOUBLE = 0.4  # seconds after which they do
+HALVES = 0.12  # share of blinks by themselves that are incomplete
+HALF = 0.6  # how far these shut the eyes
 # Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
 # with what they look at.
 FIXATION = 0.2
@@ -67,8 +69,8 @@ class Schedule:
     modes: index in MODES. moods: valence, arousal, intensity. targets: what the gaze looks at. breaths:
     length s, depth. aversions: end s, right-to-left and upward part of the offset (of life's angle).
     saccades: offset to the left and up, degrees. blinks: 0 spontaneous, 1 on a stressed syllable, 2
-    requested. swells, emphases: of the face (`expressions`). drawn: seconds up to which the lanes are filled;
-    the rest is what they were drawn from.
+    requested, 3 spontaneous and incomplete. swells, emphases: of the face (`expressions`). drawn: seconds up
+    to which the lanes are filled; the rest is what they were drawn from.
     """
 
     end: float = 0.0
@@ -394,6 +396,8 @@ class LifeDraw:
                 return lane.plus(times, rows)
             times.append(at)
             kind = 1.0 if at == heard else 0.0
+            if at == own and at != heard and chance_of(self.key("blink", number), "half") < HALVES:
+                kind = 3.0
             rows.append([2.0 if at == wanted else kind])
             last = at
             number += 1

@@ -13,6 +13,8 @@ import math
 from collections.abc import Mapping, Sequence
 
 from metagraph.graph.model import Kind, Layer, Stance
+from metagraph.playback.planning.choice import log_normal, uniform
+from metagraph.playback.planning.hashing import Bits
 
 STANDS_OUT = 0.65  # prominence from which on an act is one that a viewer remembers
 APART = 30.0  # seconds between two of those on one layer
@@ -22,6 +24,11 @@ LEAST_BEATS = 18.0  # seconds after which a gesture that hardly shows is done ag
 MOST_BEATS = 180.0  # and at most
 EACH = 7.0  # seconds of those for each gesture of the arms that the character has
 STALE = 0.05  # least factor of the likelihood of what has just been played
+ENDS_BURST = 0.25  # share of the acts of one who talks that end a burst: some 2.5 acts, then a rest
+LEAST_LULL = 5.0  # seconds of that rest at least
+MOST_LULL = 30.0  # and at most
+LULL = 8.0  # its mean before it is clamped
+LULL_SPREAD = 14.0  # and its standard deviation
 LEAVES_HOME = 0.2  # share of the written tilts of the head that leave the stance it begins in
 GOES_HOME = 0.7  # share of the written moves of a tilted head that go back there
 MUSES = 2.0  # seconds that a thought goes on at least for which a hand goes to the chin
@@ -61,8 +68,18 @@ def repeat_interval(kind: Kind, prominence: float, beats: float) -> float:
 def posture(layer: Layer) -> float:
     """Return how many seconds a stance is kept at least before the model changes it."""
     if layer == "body":
-        return 15.0
+        return 25.0
     return 10.0 if layer == "arms" else 8.0
+
+
+def find_lull(seed: Bits, key: str, talks: bool, variety: float) -> float:
+    """Return how many seconds the arms rest at least after an act of theirs: nothing within a burst of one
+    who talks, else from `LEAST_LULL` to `MOST_LULL`. key: of the act's meta action.
+    """
+    if talks and uniform(seed, key, "burst") >= ENDS_BURST:
+        return 0.0
+    drawn = log_normal(LULL, LULL_SPREAD, uniform(seed, key, "lull"), uniform(seed, key, "lull2"))
+    return min(MOST_LULL, max(LEAST_LULL, drawn) * variety)
 
 
 def freshness(since: float, needed: float) -> float:

@@ -33,13 +33,16 @@ from metagraph.playback.planning.director import (
     APART,
     GOES_HOME,
     LEAST_BEATS,
+    LEAST_LULL,
     LEAVES_HOME,
     LONG_REST,
+    MOST_LULL,
     MUSED,
     MUSES,
     SHORTER,
     STANDS_OUT,
     beat_interval,
+    find_lull,
     freshness,
     musing,
     posture,
@@ -87,9 +90,9 @@ class Performer:
     uses: how often each action was used. recent: the last draws of each `node`. ended: when each action
     ended. begun: keys of meta actions whose chain of transitions already plays. served: keys of those that
     the action of another one serves, too. moods: the mood over time. candidates: the actions of each `node`
-    that may be drawn, for the nodes needed so far. acted: when the last action ended. track: what lasts.
-    model: the one that wrote what was not requested, None if there is none.
-    beats: seconds after which a gesture that hardly shows may be done again.
+    that may be drawn, for the nodes needed so far. prominences: of actions, as far as needed. acted: when the
+    last action ended. track: what lasts. model: the one that wrote what was not requested, None if there is
+    none. beats: seconds after which a gesture that hardly shows may be done again.
     """
 
     project: Project
@@ -109,6 +112,7 @@ class Performer:
     begun: AbstractSet[str] = frozenset()
     served: set[str] = field(default_factory=set)
     candidates: dict[str, list[Action]] = field(default_factory=dict)
+    prominences: dict[str, float] = field(default_factory=dict)
     model: Markov | None = None
     beats: float = LEAST_BEATS
 
@@ -233,10 +237,28 @@ class Performer:
             return False
         if self.model is None or self._leads(now) != "":
             return True
+        if self._lulls(now):
+            return False
         there = self.stance == musing(self.graph.stances)
         if there and meta.request.kind == "transition" and self._muses(now):
             return False
         return performs(self.model, self.seed, meta, mode_at(self.track, now))
+
+    def _lulls(self, now: float) -> bool:
+        """Return whether the arms rest at a time: after a burst of one who talks, else after any act. In a
+        thought acts are rare anyway.
+        """
+        variety = self.project.settings.variety
+        if self.graph.layer != "arms" or variety <= 0 or len(self.cues) == 0 or self._has_mused(now):
+            return False
+        last = self.cues[-1]
+        mode = mode_at(self.track, now)
+        if now >= last.end + MOST_LULL or mode == "thinking":
+            return False
+        talks = mode == "talking"
+        if talks and last.action.kind == "transition":  # it opens a burst
+            return False
+        return now < last.end + find_lull(self.seed, last.meta, talks, variety)
 
     def _muses(self, now: float) -> bool:
         """Return whether the arms take or keep the stance in which the character thinks."""
@@ -470,8 +492,9 @@ class Performer:
         directed = meta.written and self.project.settings.variety > 0
         if directed:  # the model's limb and tags are wishes, not orders
             every = self._fresh(meta, every, now)
-            found = [a for a in found if a in every]
-            exact = [a for a in exact if a in every]
+            fresh = {a.id for a in every}
+            found = [a for a in found if a.id in fresh]
+            exact = [a for a in exact if a.id in fresh]
             if len(every) == 0:
                 moves = self._moves_on(meta, now)
                 return [SamplingStep(moves)] if len(moves) > 0 else None
@@ -621,9 +644,15 @@ class Performer:
             return 1.0 + self._count_fresh(action.end_stance, now) if talks else 1.0
         if action.id not in self.ended:
             return 1.0
-        shows = measure_prominence(self.project, action)
+        shows = self._shows(action)
         needed = repeat_interval(action.kind, shows, self.beats) * variety
         return freshness(now - self.ended[action.id], needed)
+
+    def _shows(self, action: Action) -> float:
+        """Return how much an action stands out."""
+        if action.id not in self.prominences:
+            self.prominences[action.id] = measure_prominence(self.project, action)
+        return self.prominences[action.id]
 
     def _fresh(self, meta: MetaAction, candidates: Sequence[Action], now: float) -> list[Action]:
         """Return the actions that the character may do by itself; see `director`."""
@@ -631,6 +660,8 @@ class Performer:
         layer = self.graph.layer
         if meta.request.kind == "transition":
             if now < self._moved() + posture(layer) * variety:
+                return []
+            if layer == "arms" and now < self.acted + LEAST_LULL * variety:
                 return []
             if layer != "head":
                 return list(candidates)
@@ -645,7 +676,7 @@ class Performer:
         converses = meta.request.kind == "fidget" and mode_at(self.track, now) != "idle"
         out: list[Action] = []
         for action in candidates:
-            shows = measure_prominence(self.project, action)
+            shows = self._shows(action)
             if (reminded or converses) and shows >= STANDS_OUT:
                 continue
             needed = repeat_interval(action.kind, shows, self.beats) * share
@@ -663,7 +694,7 @@ class Performer:
             return every
         if meta.written or mode_at(self.track, now) == "idle":
             return every
-        left = [a for a in every if measure_prominence(self.project, a) < STANDS_OUT]
+        left = [a for a in every if self._shows(a) < STANDS_OUT]
         return left if len(left) > 0 else every
 
     def _moves_on(self, meta: MetaAction, now: float) -> list[Action]:
@@ -682,15 +713,17 @@ class Performer:
 
     def _count_fresh(self, stance: str | None, now: float) -> int:
         """Return how many gestures of a stance have not played for long enough."""
-        count = 0
         if stance is None:
-            return count
+            return 0
         variety = self.project.settings.variety
-        for action in self.graph.of(stance, "gesture"):
-            shows = measure_prominence(self.project, action)
-            needed = repeat_interval("gesture", shows, self.beats) * variety
-            if action.id not in self.ended or now >= self.ended[action.id] + needed:
-                count += 1
+        count = len(self.graph.of(stance, "gesture"))
+        for ident, end in self.ended.items():
+            action = self.graph.actions.get(ident)
+            if action is None or action.kind != "gesture" or action.stance != stance:
+                continue
+            shows = self._shows(action)
+            if now < end + repeat_interval("gesture", shows, self.beats) * variety:
+                count -= 1
         return count
 
     def _moved(self) -> float:
@@ -708,7 +741,7 @@ class Performer:
             action = self.graph.actions.get(ident)
             if action is None or action.kind == "transition" or end < since:
                 continue
-            if measure_prominence(self.project, action) >= STANDS_OUT:
+            if self._shows(action) >= STANDS_OUT:
                 return True
         return False
 

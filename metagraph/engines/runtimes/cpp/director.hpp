@@ -10,6 +10,7 @@
 #pragma once
 
 #include "model.hpp"
+#include "choice.hpp"
 #include "language.hpp"
 
 namespace metagraph {
@@ -26,6 +27,12 @@ inline constexpr double LEAST_BEATS = 18.0; // seconds after which a gesture tha
 inline constexpr double MOST_BEATS = 180.0; // and at most
 inline constexpr double EACH = 7.0; // seconds of those for each gesture of the arms that the character has
 inline constexpr double STALE = 0.05; // least factor of the likelihood of what has just been played
+// share of the acts of one who talks that end a burst: some 2.5 acts, then a rest
+inline constexpr double ENDS_BURST = 0.25;
+inline constexpr double LEAST_LULL = 5.0; // seconds of that rest at least
+inline constexpr double MOST_LULL = 30.0; // and at most
+inline constexpr double LULL = 8.0; // its mean before it is clamped
+inline constexpr double LULL_SPREAD = 14.0; // and its standard deviation
 inline constexpr double LEAVES_HOME = 0.2; // share of the written tilts of the head that leave the stance it begins in
 inline constexpr double GOES_HOME = 0.7; // share of the written moves of a tilted head that go back there
 inline constexpr double MUSES = 2.0; // seconds that a thought goes on at least for which a hand goes to the chin
@@ -37,6 +44,7 @@ inline std::string musing(const Map<std::string, Ref<Stance>>& stances);
 inline double beat_interval(const std::string& layer, int gestures);
 inline double repeat_interval(const std::string& kind, double prominence, double beats);
 inline double posture(const std::string& layer);
+inline double find_lull(std::uint32_t seed, const std::string& key, bool talks, double variety);
 inline double freshness(double since, double needed);
 
 }  // namespace director
@@ -79,9 +87,24 @@ inline double repeat_interval(const std::string& kind, double prominence, double
 /// Return how many seconds a stance is kept at least before the model changes it.
 inline double posture(const std::string& layer) {
     if (layer == "body") {
-        return 15.0;
+        return 25.0;
     }
     return layer == "arms" ? 10.0 : 8.0;
+}
+
+/// Return how many seconds the arms rest at least after an act of theirs: nothing within a burst of one who talks, else
+/// from `LEAST_LULL` to `MOST_LULL`. key: of the act's meta action.
+inline double find_lull(std::uint32_t seed, const std::string& key, bool talks, double variety) {
+    if (talks && choice::uniform(seed, List<std::string>{key, "burst"}) >= director::ENDS_BURST) {
+        return 0.0;
+    }
+    double drawn = choice::log_normal(
+        director::LULL,
+        director::LULL_SPREAD,
+        choice::uniform(seed, List<std::string>{key, "lull"}),
+        choice::uniform(seed, List<std::string>{key, "lull2"})
+    );
+    return std::min(director::MOST_LULL, std::max(director::LEAST_LULL, drawn) * variety);
 }
 
 /// Return the factor of an action's likelihood. since: seconds since it ended; needed: its interval.

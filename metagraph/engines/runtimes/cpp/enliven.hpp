@@ -142,7 +142,9 @@ private:
         // A slow one may still be opening when the next begins.
         for (int n = lang::bisect_right(lane.times, time) - 1; n >= 0 && time - lang::at(lane.times, n) < whole; n--) {
             const double gone = time - lang::at(lane.times, n);
-            out = std::max(out, rotation::ease(std::min(gone / close, (whole - gone) / graph_.life->blink_open)));
+            const double far = lang::at(lane.rows, n)[0] == 3 ? schedule::HALF : 1; // some are incomplete
+            const double shut = rotation::ease(std::min(gone / close, (whole - gone) / graph_.life->blink_open));
+            out = std::max(out, far * shut);
         }
         return out;
     }

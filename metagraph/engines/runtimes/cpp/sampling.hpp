@@ -59,8 +59,9 @@ struct SamplingStep {
 /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun:
 /// keys of meta actions whose chain of transitions already plays. served: keys of those that the action of another one
 /// serves, too. moods: the mood over time. candidates: the actions of each `node` that may be drawn, for the nodes
-/// needed so far. acted: when the last action ended. track: what lasts. model: the one that wrote what was not
-/// requested, None if there is none. beats: seconds after which a gesture that hardly shows may be done again.
+/// needed so far. prominences: of actions, as far as needed. acted: when the last action ended. track: what lasts.
+/// model: the one that wrote what was not requested, None if there is none. beats: seconds after which a gesture that
+/// hardly shows may be done again.
 struct Performer {
     Ref<Project> project;
     Ref<MetaGraph> graph;
@@ -79,6 +80,7 @@ struct Performer {
     Set<std::string> begun;
     Set<std::string> served;
     Map<std::string, List<Ref<Action>>> candidates;
+    Map<std::string, double> prominences;
     Ref<Markov> model;
     double beats;
 
@@ -100,6 +102,7 @@ struct Performer {
         Set<std::string> begun_ = Set<std::string>{},
         Set<std::string> served_ = Set<std::string>{},
         Map<std::string, List<Ref<Action>>> candidates_ = Map<std::string, List<Ref<Action>>>{},
+        Map<std::string, double> prominences_ = Map<std::string, double>{},
         Ref<Markov> model_ = nullptr,
         double beats_ = director::LEAST_BEATS
     )
@@ -120,6 +123,7 @@ struct Performer {
             begun(std::move(begun_)),
             served(std::move(served_)),
             candidates(std::move(candidates_)),
+            prominences(std::move(prominences_)),
             model(std::move(model_)),
             beats(beats_) {}
 
@@ -144,6 +148,10 @@ struct Performer {
     /// Return whether what a model wrote begins at a time, which may be later than it was written for: not soon after
     /// an interruption, and nothing that would end a thought.
     bool _may_begin(const Ref<MetaAction>& meta, double now);
+
+    /// Return whether the arms rest at a time: after a burst of one who talks, else after any act. In a thought acts
+    /// are rare anyway.
+    bool _lulls(double now);
 
     /// Return whether the arms take or keep the stance in which the character thinks.
     bool _muses(double now);
@@ -220,6 +228,9 @@ struct Performer {
 
     /// Return the factor by which variety changes an action's likelihood.
     double _variety(const Ref<Action>& action, double now);
+
+    /// Return how much an action stands out.
+    double _shows(const Ref<Action>& action);
 
     /// Return the actions that the character may do by itself; see `director`.
     List<Ref<Action>> _fresh(const Ref<MetaAction>& meta, const List<Ref<Action>>& candidates, double now);
@@ -455,11 +466,31 @@ inline bool Performer::_may_begin(const Ref<MetaAction>& meta, double now) {
     if (this->model == nullptr || this->_leads(now) != "") {
         return true;
     }
+    if (this->_lulls(now)) {
+        return false;
+    }
     bool there = this->stance == director::musing(this->graph->stances);
     if (there && meta->request->kind == "transition" && this->_muses(now)) {
         return false;
     }
     return markov::performs(this->model, this->seed, meta, wanted::mode_at(this->track, now));
+}
+
+inline bool Performer::_lulls(double now) {
+    double variety = this->project->settings->variety;
+    if (this->graph->layer != "arms" || variety <= 0 || lang::len(this->cues) == 0 || this->_has_mused(now)) {
+        return false;
+    }
+    Ref<Cue> last = lang::at(this->cues, -1);
+    std::string mode = wanted::mode_at(this->track, now);
+    if (now >= last->end + director::MOST_LULL || mode == "thinking") {
+        return false;
+    }
+    bool talks = mode == "talking";
+    if (talks && last->action->kind == "transition") { // it opens a burst
+        return false;
+    }
+    return now < last->end + director::find_lull(this->seed, last->meta, talks, variety);
 }
 
 inline bool Performer::_muses(double now) {
@@ -864,16 +895,20 @@ inline std::optional<List<Ref<SamplingStep>>> Performer::_steps(const Ref<MetaAc
     bool directed = meta->written && this->project->settings->variety > 0;
     if (directed) { // the model's limb and tags are wishes, not orders
         every = this->_fresh(meta, every, now);
+        Set<std::string> fresh;
+        for (const auto& a : every) {
+            fresh.insert(a->id);
+        }
         List<Ref<Action>> found6;
         for (const auto& a : found) {
-            if (lang::contains(every, a)) {
+            if (lang::contains(fresh, a->id)) {
                 found6.push_back(a);
             }
         }
         found = found6;
         List<Ref<Action>> found7;
         for (const auto& a : exact) {
-            if (lang::contains(every, a)) {
+            if (lang::contains(fresh, a->id)) {
                 found7.push_back(a);
             }
         }
@@ -1111,9 +1146,16 @@ inline double Performer::_variety(const Ref<Action>& action, double now) {
     if (!lang::contains(this->ended, action->id)) {
         return 1.0;
     }
-    double shows = prominence::measure_prominence(this->project, action);
+    double shows = this->_shows(action);
     double needed = director::repeat_interval(action->kind, shows, this->beats) * variety;
     return director::freshness(now - this->ended.at(action->id), needed);
+}
+
+inline double Performer::_shows(const Ref<Action>& action) {
+    if (!lang::contains(this->prominences, action->id)) {
+        this->prominences[action->id] = prominence::measure_prominence(this->project, action);
+    }
+    return this->prominences.at(action->id);
 }
 
 inline List<Ref<Action>> Performer::_fresh(
@@ -1125,6 +1167,9 @@ inline List<Ref<Action>> Performer::_fresh(
     std::string layer = this->graph->layer;
     if (meta->request->kind == "transition") {
         if (now < this->_moved() + director::posture(layer) * variety) {
+            return List<Ref<Action>>{};
+        }
+        if (layer == "arms" && now < this->acted + director::LEAST_LULL * variety) {
             return List<Ref<Action>>{};
         }
         if (layer != "head") {
@@ -1149,7 +1194,7 @@ inline List<Ref<Action>> Performer::_fresh(
     bool converses = meta->request->kind == "fidget" && wanted::mode_at(this->track, now) != "idle";
     List<Ref<Action>> out;
     for (const auto& action : candidates) {
-        double shows = prominence::measure_prominence(this->project, action);
+        double shows = this->_shows(action);
         if ((reminded || converses) && shows >= director::STANDS_OUT) {
             continue;
         }
@@ -1176,7 +1221,7 @@ inline List<Ref<Action>> Performer::_modest(
     }
     List<Ref<Action>> left;
     for (const auto& a : every) {
-        if (prominence::measure_prominence(this->project, a) < director::STANDS_OUT) {
+        if (this->_shows(a) < director::STANDS_OUT) {
             left.push_back(a);
         }
     }
@@ -1200,16 +1245,19 @@ inline List<Ref<Action>> Performer::_moves_on(const Ref<MetaAction>& meta, doubl
 }
 
 inline int Performer::_count_fresh(const std::optional<std::string>& stance, double now) {
-    int count = 0;
     if (!stance.has_value()) {
-        return count;
+        return 0;
     }
     double variety = this->project->settings->variety;
-    for (const auto& action : this->graph->of(*stance, "gesture")) {
-        double shows = prominence::measure_prominence(this->project, action);
-        double needed = director::repeat_interval("gesture", shows, this->beats) * variety;
-        if (!lang::contains(this->ended, action->id) || now >= this->ended.at(action->id) + needed) {
-            count += 1;
+    int count = lang::len(this->graph->of(*stance, "gesture"));
+    for (const auto& [ident, end] : this->ended) {
+        Ref<Action> action = lang::get(this->graph->actions, ident);
+        if (action == nullptr || action->kind != "gesture" || action->stance != *stance) {
+            continue;
+        }
+        double shows = this->_shows(action);
+        if (now < end + director::repeat_interval("gesture", shows, this->beats) * variety) {
+            count -= 1;
         }
     }
     return count;
@@ -1232,7 +1280,7 @@ inline bool Performer::_shown(double since) {
         if (action == nullptr || action->kind == "transition" || end < since) {
             continue;
         }
-        if (prominence::measure_prominence(this->project, action) >= director::STANDS_OUT) {
+        if (this->_shows(action) >= director::STANDS_OUT) {
             return true;
         }
     }

@@ -37,6 +37,8 @@ inline constexpr double AFTER_BLINK = 1.0;
 inline constexpr double BLINK_SPREAD = 0.7; // standard deviation of the gaps, times their mean
 inline constexpr double DOUBLES = 0.06; // share of blinks that follow the one before at once
 inline constexpr double DOUBLE = 0.4; // seconds after which they do
+inline constexpr double HALVES = 0.12; // share of blinks by themselves that are incomplete
+inline constexpr double HALF = 0.6; // how far these shut the eyes
 // Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
 // with what they look at.
 inline constexpr double FIXATION = 0.2;
@@ -88,8 +90,9 @@ inline double share(const Ref<Lane>& lane, double start, double end);
 ///
 /// modes: index in MODES. moods: valence, arousal, intensity. targets: what the gaze looks at. breaths: length s,
 /// depth. aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left
-/// and up, degrees. blinks: 0 spontaneous, 1 on a stressed syllable, 2 requested. swells, emphases: of the face
-/// (`expressions`). drawn: seconds up to which the lanes are filled; the rest is what they were drawn from.
+/// and up, degrees. blinks: 0 spontaneous, 1 on a stressed syllable, 2 requested, 3 spontaneous and incomplete. swells,
+/// emphases: of the face (`expressions`). drawn: seconds up to which the lanes are filled; the rest is what they were
+/// drawn from.
 struct Schedule {
     double end;
     double drawn;
@@ -554,6 +557,9 @@ inline Ref<Lane> LifeDraw::blinks(const Ref<Lane>& lane) {
         }
         times.push_back(at);
         double kind = at == heard ? 1.0 : 0.0;
+        if (at == own && at != heard && choice::chance_of(this->key("blink", number), "half") < schedule::HALVES) {
+            kind = 3.0;
+        }
         rows.push_back(List<double>{at == wanted ? 2.0 : kind});
         last = at;
         number += 1;

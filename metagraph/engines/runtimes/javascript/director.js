@@ -9,6 +9,7 @@
  * Translated from metagraph/playback/planning/director.py; change that, and translate anew.
  */
 
+import { logNormal, uniform } from "./choice.js";
 import { partedLast, splitWords } from "./basics.js";
 
 export const STANDS_OUT = 0.65; // prominence from which on an act is one that a viewer remembers
@@ -19,6 +20,11 @@ export const LEAST_BEATS = 18; // seconds after which a gesture that hardly show
 export const MOST_BEATS = 180; // and at most
 export const EACH = 7; // seconds of those for each gesture of the arms that the character has
 export const STALE = 0.05; // least factor of the likelihood of what has just been played
+export const ENDS_BURST = 0.25; // share of the acts of one who talks that end a burst: some 2.5 acts, then a rest
+export const LEAST_LULL = 5; // seconds of that rest at least
+export const MOST_LULL = 30; // and at most
+export const LULL = 8; // its mean before it is clamped
+export const LULL_SPREAD = 14; // and its standard deviation
 export const LEAVES_HOME = 0.2; // share of the written tilts of the head that leave the stance it begins in
 export const GOES_HOME = 0.7; // share of the written moves of a tilted head that go back there
 export const MUSES = 2; // seconds that a thought goes on at least for which a hand goes to the chin
@@ -79,9 +85,26 @@ export function repeatInterval(kind, prominence, beats) {
  */
 export function posture(layer) {
   if (layer === "body") {
-    return 15;
+    return 25;
   }
   return layer === "arms" ? 10 : 8;
+}
+
+/**
+ * Return how many seconds the arms rest at least after an act of theirs: nothing within a burst of one who talks, else from
+ * `LEAST_LULL` to `MOST_LULL`. key: of the act's meta action.
+ * @param {number} seed
+ * @param {string} key
+ * @param {boolean} talks
+ * @param {number} variety
+ * @returns {number}
+ */
+export function findLull(seed, key, talks, variety) {
+  if (talks && uniform(seed, key, "burst") >= ENDS_BURST) {
+    return 0;
+  }
+  const drawn = logNormal(LULL, LULL_SPREAD, uniform(seed, key, "lull"), uniform(seed, key, "lull2"));
+  return Math.min(MOST_LULL, Math.max(LEAST_LULL, drawn) * variety);
 }
 
 /**

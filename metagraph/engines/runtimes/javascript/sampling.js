@@ -27,13 +27,16 @@ import {
   APART,
   GOES_HOME,
   LEAST_BEATS,
+  LEAST_LULL,
   LEAVES_HOME,
   LONG_REST,
+  MOST_LULL,
   MUSED,
   MUSES,
   SHORTER,
   STANDS_OUT,
   beatInterval,
+  findLull,
   freshness,
   musing,
   posture,
@@ -68,13 +71,14 @@ export class SamplingStep {
  *
  * uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
  * meta actions whose chain of transitions already plays. served: keys of those that the action of another one serves, too.
- * moods: the mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far. acted:
- * when the last action ended. track: what lasts. model: the one that wrote what was not requested, None if there is none.
- * beats: seconds after which a gesture that hardly shows may be done again.
+ * moods: the mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far.
+ * prominences: of actions, as far as needed. acted: when the last action ended. track: what lasts. model: the one that wrote
+ * what was not requested, None if there is none. beats: seconds after which a gesture that hardly shows may be done again.
  *
  * project: Project; graph: MetaGraph; seed: number; stance: string; moods: Moods; track: Track; free: number; acted: number;
  * uses: Map<string, number>; recent: Map<string, string[]>; ended: Map<string, number>; cues: Cue[]; rests: Rest[]; reports:
- * Report[]; begun: Set<string>; served: Set<string>; candidates: Map<string, Action[]>; model: ?Markov; beats: number.
+ * Report[]; begun: Set<string>; served: Set<string>; candidates: Map<string, Action[]>; prominences: Map<string, number>;
+ * model: ?Markov; beats: number.
  */
 export class Performer {
   constructor(
@@ -95,6 +99,7 @@ export class Performer {
     begun = new Set([]),
     served = new Set([]),
     candidates = new Map(),
+    prominences = new Map(),
     model = null,
     beats = LEAST_BEATS,
   ) {
@@ -115,6 +120,7 @@ export class Performer {
     this.begun = begun;
     this.served = served;
     this.candidates = candidates;
+    this.prominences = prominences;
     this.model = model;
     this.beats = beats;
   }
@@ -266,11 +272,35 @@ export class Performer {
     if (this.model === null || this.leads(now) !== "") {
       return true;
     }
+    if (this.lulls(now)) {
+      return false;
+    }
     const there = this.stance === musing(this.graph.stances);
     if (there && meta.request.kind === "transition" && this.muses(now)) {
       return false;
     }
     return performs(this.model, this.seed, meta, modeAt(this.track, now));
+  }
+
+  /**
+   * Return whether the arms rest at a time: after a burst of one who talks, else after any act. In a thought acts are rare
+   * anyway.
+   */
+  lulls(now) {
+    const variety = this.project.settings.variety;
+    if (this.graph.layer !== "arms" || variety <= 0 || this.cues.length === 0 || this.hasMused(now)) {
+      return false;
+    }
+    const last = this.cues[this.cues.length - 1];
+    const mode = modeAt(this.track, now);
+    if (now >= last.end + MOST_LULL || mode === "thinking") {
+      return false;
+    }
+    const talks = mode === "talking";
+    if (talks && last.action.kind === "transition") { // it opens a burst
+      return false;
+    }
+    return now < last.end + findLull(this.seed, last.meta, talks, variety);
   }
 
   /** Return whether the arms take or keep the stance in which the character thinks. */
@@ -562,8 +592,9 @@ export class Performer {
     const directed = meta.written && this.project.settings.variety > 0;
     if (directed) { // the model's limb and tags are wishes, not orders
       every = this.fresh(meta, every, now);
-      found = found.filter((a) => every.includes(a));
-      exact = exact.filter((a) => every.includes(a));
+      const fresh = new Set(every.map((a) => a.id));
+      found = found.filter((a) => fresh.has(a.id));
+      exact = exact.filter((a) => fresh.has(a.id));
       if (every.length === 0) {
         const moves = this.movesOn(meta, now);
         return moves.length > 0 ? [new SamplingStep(moves)] : null;
@@ -747,9 +778,17 @@ export class Performer {
     if (!this.ended.has(action.id)) {
       return 1;
     }
-    const shows = measureProminence(this.project, action);
+    const shows = this.shows(action);
     const needed = repeatInterval(action.kind, shows, this.beats) * variety;
     return freshness(now - this.ended.get(action.id), needed);
+  }
+
+  /** Return how much an action stands out. */
+  shows(action) {
+    if (!this.prominences.has(action.id)) {
+      this.prominences.set(action.id, measureProminence(this.project, action));
+    }
+    return this.prominences.get(action.id);
   }
 
   /** Return the actions that the character may do by itself; see `director`. */
@@ -758,6 +797,9 @@ export class Performer {
     const layer = this.graph.layer;
     if (meta.request.kind === "transition") {
       if (now < this.moved() + posture(layer) * variety) {
+        return [];
+      }
+      if (layer === "arms" && now < this.acted + LEAST_LULL * variety) {
         return [];
       }
       if (layer !== "head") {
@@ -776,7 +818,7 @@ export class Performer {
     const converses = meta.request.kind === "fidget" && modeAt(this.track, now) !== "idle";
     const out = [];
     for (const action of candidates) {
-      const shows = measureProminence(this.project, action);
+      const shows = this.shows(action);
       if ((reminded || converses) && shows >= STANDS_OUT) {
         continue;
       }
@@ -801,7 +843,7 @@ export class Performer {
     if (meta.written || modeAt(this.track, now) === "idle") {
       return every;
     }
-    const left = every.filter((a) => measureProminence(this.project, a) < STANDS_OUT);
+    const left = every.filter((a) => this.shows(a) < STANDS_OUT);
     return left.length > 0 ? left : every;
   }
 
@@ -827,16 +869,19 @@ export class Performer {
 
   /** Return how many gestures of a stance have not played for long enough. */
   countFresh(stance, now) {
-    let count = 0;
     if (stance === null) {
-      return count;
+      return 0;
     }
     const variety = this.project.settings.variety;
-    for (const action of this.graph.of(stance, "gesture")) {
-      const shows = measureProminence(this.project, action);
-      const needed = repeatInterval("gesture", shows, this.beats) * variety;
-      if (!this.ended.has(action.id) || now >= this.ended.get(action.id) + needed) {
-        count += 1;
+    let count = this.graph.of(stance, "gesture").length;
+    for (const { 0: ident, 1: end } of this.ended) {
+      const action = this.graph.actions.get(ident) ?? null;
+      if (action === null || action.kind !== "gesture" || action.stance !== stance) {
+        continue;
+      }
+      const shows = this.shows(action);
+      if (now < end + repeatInterval("gesture", shows, this.beats) * variety) {
+        count -= 1;
       }
     }
     return count;
@@ -861,7 +906,7 @@ export class Performer {
       if (action === null || action.kind === "transition" || end < since) {
         continue;
       }
-      if (measureProminence(this.project, action) >= STANDS_OUT) {
+      if (this.shows(action) >= STANDS_OUT) {
         return true;
       }
     }

@@ -27,6 +27,8 @@ export const AFTER_BLINK = 1;
 export const BLINK_SPREAD = 0.7; // standard deviation of the gaps, times their mean
 export const DOUBLES = 0.06; // share of blinks that follow the one before at once
 export const DOUBLE = 0.4; // seconds after which they do
+export const HALVES = 0.12; // share of blinks by themselves that are incomplete
+export const HALF = 0.6; // how far these shut the eyes
 // Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
 // with what they look at.
 export const FIXATION = 0.2;
@@ -51,8 +53,8 @@ export const STRETCH = 0.5;
  *
  * modes: index in MODES. moods: valence, arousal, intensity. targets: what the gaze looks at. breaths: length s, depth.
  * aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up,
- * degrees. blinks: 0 spontaneous, 1 on a stressed syllable, 2 requested. swells, emphases: of the face (`expressions`).
- * drawn: seconds up to which the lanes are filled; the rest is what they were drawn from.
+ * degrees. blinks: 0 spontaneous, 1 on a stressed syllable, 2 requested, 3 spontaneous and incomplete. swells, emphases: of
+ * the face (`expressions`). drawn: seconds up to which the lanes are filled; the rest is what they were drawn from.
  *
  * end: number; drawn: number; modes: Lane; moods: Lane; targets: GazeTarget[]; breaths: Lane; aversions: Lane; saccades:
  * Lane; blinks: Lane; swells: Lane; emphases: Lane; life: ?Life; track: ?Track; voices: ?Voices; seed: number.
@@ -468,7 +470,10 @@ export class LifeDraw {
         return lane.plus(times, rows);
       }
       times.push(at);
-      const kind = at === heard ? 1 : 0;
+      let kind = at === heard ? 1 : 0;
+      if (at === own && at !== heard && chanceOf(this.key("blink", number), "half") < HALVES) {
+        kind = 3;
+      }
       rows.push([at === wanted ? 2 : kind]);
       last = at;
       number += 1;

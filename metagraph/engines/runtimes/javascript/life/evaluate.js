@@ -11,6 +11,7 @@ import { bisect } from "../basics.js";
 import { FaceShown, answer, settle, shownFace } from "../expressions.js";
 import { Bearing, bearing, shown, shutIn } from "../mood.js";
 import { fromVector, multiply } from "../rotation.js";
+import { HALF } from "../schedule.js";
 import { CHANNELS, LIDS, MOUTH } from "../words.js";
 import { Gaze, ease } from "./gaze.js";
 import { mouthAt } from "./lips.js";
@@ -213,13 +214,14 @@ function breathAt({ times, rows }, life, time) {
 }
 
 /** Return how far a blink has shut the eyes, 0..1. */
-function blinkAt({ times }, life, time) {
+function blinkAt({ times, rows }, life, time) {
   const whole = life.blinkClose + life.blinkOpen;
   let out = 0;
   // A slow one may still be opening when the next begins.
   for (let n = bisect(times, time, true) - 1; n >= 0 && time - times[n] < whole; n--) {
     const gone = time - times[n];
-    out = Math.max(out, ease(Math.min(gone / life.blinkClose, (whole - gone) / life.blinkOpen)));
+    const far = rows[n][0] === 3 ? HALF : 1; // some are incomplete
+    out = Math.max(out, far * ease(Math.min(gone / life.blinkClose, (whole - gone) / life.blinkOpen)));
   }
   return out;
 }

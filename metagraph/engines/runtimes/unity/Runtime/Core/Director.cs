@@ -23,6 +23,11 @@ namespace Metagraph
         public const double MostBeats = 180.0; // and at most
         public const double Each = 7.0; // seconds of those for each gesture of the arms that the character has
         public const double Stale = 0.05; // least factor of the likelihood of what has just been played
+        public const double EndsBurst = 0.25; // share of the acts of one who talks that end a burst: some 2.5 acts, then a rest
+        public const double LeastLull = 5.0; // seconds of that rest at least
+        public const double MostLull = 30.0; // and at most
+        public const double Lull = 8.0; // its mean before it is clamped
+        public const double LullSpread = 14.0; // and its standard deviation
         public const double LeavesHome = 0.2; // share of the written tilts of the head that leave the stance it begins in
         public const double GoesHome = 0.7; // share of the written moves of a tilted head that go back there
         public const double Muses = 2.0; // seconds that a thought goes on at least for which a hand goes to the chin
@@ -81,9 +86,28 @@ namespace Metagraph
         {
             if (layer == "body")
             {
-                return 15.0;
+                return 25.0;
             }
             return layer == "arms" ? 10.0 : 8.0;
+        }
+
+        /// <summary>
+        /// Return how many seconds the arms rest at least after an act of theirs: nothing within a burst of one who talks, else
+        /// from `LEAST_LULL` to `MOST_LULL`. key: of the act's meta action.
+        /// </summary>
+        public static double FindLull(uint seed, string key, bool talks, double variety)
+        {
+            if (talks && ChoiceRules.Uniform(seed, key, "burst") >= EndsBurst)
+            {
+                return 0.0;
+            }
+            var drawn = ChoiceRules.LogNormal(
+                Lull,
+                LullSpread,
+                ChoiceRules.Uniform(seed, key, "lull"),
+                ChoiceRules.Uniform(seed, key, "lull2")
+            );
+            return Math.Min(MostLull, Math.Max(LeastLull, drawn) * variety);
         }
 
         /// <summary>

@@ -25,9 +25,9 @@ namespace Metagraph
     ///
     /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
     /// meta actions whose chain of transitions already plays. served: keys of those that the action of another one serves, too.
-    /// moods: the mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far. acted:
-    /// when the last action ended. track: what lasts. model: the one that wrote what was not requested, None if there is none.
-    /// beats: seconds after which a gesture that hardly shows may be done again.
+    /// moods: the mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far.
+    /// prominences: of actions, as far as needed. acted: when the last action ended. track: what lasts. model: the one that wrote
+    /// what was not requested, None if there is none. beats: seconds after which a gesture that hardly shows may be done again.
     /// </summary>
     public sealed class Performer
     {
@@ -48,6 +48,7 @@ namespace Metagraph
         public HashSet<string> Begun;
         public HashSet<string> Served;
         public Dictionary<string, List<GraphAction>> Candidates;
+        public Dictionary<string, double> Prominences;
         public Markov Model;
         public double Beats;
 
@@ -69,6 +70,7 @@ namespace Metagraph
             HashSet<string> begun = null,
             HashSet<string> served = null,
             Dictionary<string, List<GraphAction>> candidates = null,
+            Dictionary<string, double> prominences = null,
             Markov model = null,
             double beats = DirectorRules.LeastBeats
         )
@@ -90,6 +92,7 @@ namespace Metagraph
             Begun = begun ?? new HashSet<string>();
             Served = served ?? new HashSet<string>();
             Candidates = candidates ?? new Dictionary<string, List<GraphAction>>();
+            Prominences = prominences ?? new Dictionary<string, double>();
             Model = model;
             Beats = beats;
         }
@@ -284,12 +287,41 @@ namespace Metagraph
             {
                 return true;
             }
+            if (Lulls(now))
+            {
+                return false;
+            }
             var there = Stance == DirectorRules.Musing(Graph.Stances);
             if (there && meta.Request.Kind == "transition" && Muses(now))
             {
                 return false;
             }
             return MarkovRules.Performs(Model, Seed, meta, WantedRules.ModeAt(Track, now));
+        }
+
+        /// <summary>
+        /// Return whether the arms rest at a time: after a burst of one who talks, else after any act. In a thought acts are rare
+        /// anyway.
+        /// </summary>
+        public bool Lulls(double now)
+        {
+            var variety = Project.Settings.Variety;
+            if (Graph.Layer != "arms" || variety <= 0 || Cues.Count == 0 || HasMused(now))
+            {
+                return false;
+            }
+            var last = Cues[Cues.Count - 1];
+            var mode = WantedRules.ModeAt(Track, now);
+            if (now >= last.End + DirectorRules.MostLull || mode == "thinking")
+            {
+                return false;
+            }
+            var talks = mode == "talking";
+            if (talks && last.Action.Kind == "transition") // it opens a burst
+            {
+                return false;
+            }
+            return now < last.End + DirectorRules.FindLull(Seed, last.Meta, talks, variety);
         }
 
         /// <summary>Return whether the arms take or keep the stance in which the character thinks.</summary>
@@ -695,8 +727,9 @@ namespace Metagraph
             if (directed) // the model's limb and tags are wishes, not orders
             {
                 every = Fresh(meta, every, now);
-                found = found.Where(a => every.Contains(a)).ToList();
-                exact = exact.Where(a => every.Contains(a)).ToList();
+                var fresh = new HashSet<string>(every.Select(a => a.Id));
+                found = found.Where(a => fresh.Contains(a.Id)).ToList();
+                exact = exact.Where(a => fresh.Contains(a.Id)).ToList();
                 if (every.Count == 0)
                 {
                     var moves = MovesOn(meta, now);
@@ -922,9 +955,19 @@ namespace Metagraph
             {
                 return 1.0;
             }
-            var shows = ProminenceRules.MeasureProminence(Project, action);
+            var shows = Shows(action);
             var needed = DirectorRules.RepeatInterval(action.Kind, shows, Beats) * variety;
             return DirectorRules.Freshness(now - Ended[action.Id], needed);
+        }
+
+        /// <summary>Return how much an action stands out.</summary>
+        public double Shows(GraphAction action)
+        {
+            if (!Prominences.ContainsKey(action.Id))
+            {
+                Prominences[action.Id] = ProminenceRules.MeasureProminence(Project, action);
+            }
+            return Prominences[action.Id];
         }
 
         /// <summary>Return the actions that the character may do by itself; see `director`.</summary>
@@ -935,6 +978,10 @@ namespace Metagraph
             if (meta.Request.Kind == "transition")
             {
                 if (now < Moved() + DirectorRules.Posture(layer) * variety)
+                {
+                    return new List<GraphAction>();
+                }
+                if (layer == "arms" && now < Acted + DirectorRules.LeastLull * variety)
                 {
                     return new List<GraphAction>();
                 }
@@ -957,7 +1004,7 @@ namespace Metagraph
             var out_ = new List<GraphAction>();
             foreach (GraphAction action in candidates)
             {
-                var shows = ProminenceRules.MeasureProminence(Project, action);
+                var shows = Shows(action);
                 if ((reminded || converses) && shows >= DirectorRules.StandsOut)
                 {
                     continue;
@@ -987,7 +1034,7 @@ namespace Metagraph
             {
                 return every;
             }
-            var left = every.Where(a => ProminenceRules.MeasureProminence(Project, a) < DirectorRules.StandsOut).ToList();
+            var left = every.Where(a => Shows(a) < DirectorRules.StandsOut).ToList();
             return left.Count > 0 ? left : every;
         }
 
@@ -1019,19 +1066,25 @@ namespace Metagraph
         /// <summary>Return how many gestures of a stance have not played for long enough.</summary>
         public int CountFresh(string stance, double now)
         {
-            var count = 0;
             if (stance == null)
             {
-                return count;
+                return 0;
             }
             var variety = Project.Settings.Variety;
-            foreach (GraphAction action in Graph.Of(stance, "gesture"))
+            var count = Graph.Of(stance, "gesture").Count;
+            foreach (var one in Ended)
             {
-                var shows = ProminenceRules.MeasureProminence(Project, action);
-                var needed = DirectorRules.RepeatInterval("gesture", shows, Beats) * variety;
-                if (!Ended.ContainsKey(action.Id) || now >= Ended[action.Id] + needed)
+                var ident = one.Key;
+                var end = one.Value;
+                var action = PlainMaps.Get(Graph.Actions, ident);
+                if (action == null || action.Kind != "gesture" || action.Stance != stance)
                 {
-                    count += 1;
+                    continue;
+                }
+                var shows = Shows(action);
+                if (now < end + DirectorRules.RepeatInterval("gesture", shows, Beats) * variety)
+                {
+                    count -= 1;
                 }
             }
             return count;
@@ -1066,7 +1119,7 @@ namespace Metagraph
                 {
                     continue;
                 }
-                if (ProminenceRules.MeasureProminence(Project, action) >= DirectorRules.StandsOut)
+                if (Shows(action) >= DirectorRules.StandsOut)
                 {
                     return true;
                 }

@@ -11,8 +11,8 @@ namespace Metagraph
     ///
     /// modes: index in MODES. moods: valence, arousal, intensity. targets: what the gaze looks at. breaths: length s, depth.
     /// aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up,
-    /// degrees. blinks: 0 spontaneous, 1 on a stressed syllable, 2 requested. swells, emphases: of the face (`expressions`).
-    /// drawn: seconds up to which the lanes are filled; the rest is what they were drawn from.
+    /// degrees. blinks: 0 spontaneous, 1 on a stressed syllable, 2 requested, 3 spontaneous and incomplete. swells, emphases: of
+    /// the face (`expressions`). drawn: seconds up to which the lanes are filled; the rest is what they were drawn from.
     /// </summary>
     public sealed class Schedule
     {
@@ -459,6 +459,10 @@ namespace Metagraph
                 }
                 times.Add(at);
                 var kind = at == heard ? 1.0 : 0.0;
+                if (at == own && at != heard && ChoiceRules.ChanceOf(Key("blink", number), "half") < ScheduleRules.Halves)
+                {
+                    kind = 3.0;
+                }
                 rows.Add(new List<double> { at == wanted ? 2.0 : kind });
                 last = at;
                 number += 1;
@@ -508,6 +512,8 @@ namespace Metagraph
         public const double BlinkSpread = 0.7; // standard deviation of the gaps, times their mean
         public const double Doubles = 0.06; // share of blinks that follow the one before at once
         public const double Double = 0.4; // seconds after which they do
+        public const double Halves = 0.12; // share of blinks by themselves that are incomplete
+        public const double Half = 0.6; // how far these shut the eyes
         // Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
         // with what they look at.
         public const double Fixation = 0.2;

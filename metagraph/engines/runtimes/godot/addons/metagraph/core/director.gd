@@ -7,6 +7,7 @@
 #
 # Translated from metagraph/playback/planning/director.py; change that, and translate anew.
 
+const Choice = preload("choice.gd")
 const Util = preload("util.gd")
 const STANDS_OUT = 0.65  # prominence from which on an act is one that a viewer remembers
 const APART = 30.0  # seconds between two of those on one layer
@@ -16,6 +17,11 @@ const LEAST_BEATS = 18.0  # seconds after which a gesture that hardly shows is d
 const MOST_BEATS = 180.0  # and at most
 const EACH = 7.0  # seconds of those for each gesture of the arms that the character has
 const STALE = 0.05  # least factor of the likelihood of what has just been played
+const ENDS_BURST = 0.25  # share of the acts of one who talks that end a burst: some 2.5 acts, then a rest
+const LEAST_LULL = 5.0  # seconds of that rest at least
+const MOST_LULL = 30.0  # and at most
+const LULL = 8.0  # its mean before it is clamped
+const LULL_SPREAD = 14.0  # and its standard deviation
 const LEAVES_HOME = 0.2  # share of the written tilts of the head that leave the stance it begins in
 const GOES_HOME = 0.7  # share of the written moves of a tilted head that go back there
 const MUSES = 2.0  # seconds that a thought goes on at least for which a hand goes to the chin
@@ -54,8 +60,17 @@ static func repeat_interval(kind, prominence, beats):
 # Return how many seconds a stance is kept at least before the model changes it.
 static func posture(layer):
 	if layer == "body":
-		return 15.0
+		return 25.0
 	return 10.0 if layer == "arms" else 8.0
+
+
+# Return how many seconds the arms rest at least after an act of theirs: nothing within a burst of one who talks, else from
+# `LEAST_LULL` to `MOST_LULL`. key: of the act's meta action.
+static func find_lull(seed_, key, talks, variety):
+	if talks and Choice.uniform(seed_, [key, "burst"]) >= ENDS_BURST:
+		return 0.0
+	var drawn = Choice.log_normal(LULL, LULL_SPREAD, Choice.uniform(seed_, [key, "lull"]), Choice.uniform(seed_, [key, "lull2"]))
+	return Util.least(MOST_LULL, Util.most(LEAST_LULL, drawn) * variety)
 
 
 # Return the factor of an action's likelihood. since: seconds since it ended; needed: its interval.

@@ -6,6 +6,7 @@ const Mood = preload("mood.gd")
 const Util = preload("util.gd")
 const Turns = preload("turns.gd")
 const Gaze = preload("gaze.gd")
+const Schedule = preload("schedule.gd")
 const Solve = preload("solve.gd")
 const Lips = preload("lips.gd")
 const LIDS = 4  # channels: the lids, the blink, the jaw, then the mouth's shapes but silence
@@ -128,7 +129,9 @@ static func blink_at(lane, life, time):
 	var n = Util.right_of(lane.times, time) - 1
 	while n >= 0 and time - lane.times[n] < whole:  # a slow one may still be opening when the next begins
 		var gone = time - lane.times[n]
-		out = Util.most(out, Util.smooth(Util.least(gone / life.blink_close, (whole - gone) / life.blink_open)))
+		var far = Schedule.HALF if lane.rows[n][0] == 3.0 else 1.0  # some are incomplete
+		var shut = Util.smooth(Util.least(gone / life.blink_close, (whole - gone) / life.blink_open))
+		out = Util.most(out, far * shut)
 		n -= 1
 	return out
 

@@ -35,9 +35,9 @@ class SamplingStep:
 #
 # uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of meta
 # actions whose chain of transitions already plays. served: keys of those that the action of another one serves, too. moods: the
-# mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far. acted: when the last
-# action ended. track: what lasts. model: the one that wrote what was not requested, None if there is none. beats: seconds after
-# which a gesture that hardly shows may be done again.
+# mood over time. candidates: the actions of each `node` that may be drawn, for the nodes needed so far. prominences: of actions,
+# as far as needed. acted: when the last action ended. track: what lasts. model: the one that wrote what was not requested, None
+# if there is none. beats: seconds after which a gesture that hardly shows may be done again.
 class Performer:
 	var project
 	var graph
@@ -56,6 +56,7 @@ class Performer:
 	var begun
 	var served
 	var candidates
+	var prominences
 	var model
 	var beats
 
@@ -77,6 +78,7 @@ class Performer:
 		begun_ = null,
 		served_ = null,
 		candidates_ = null,
+		prominences_ = null,
 		model_ = null,
 		beats_ = Director.LEAST_BEATS
 	):
@@ -97,6 +99,7 @@ class Performer:
 		self.begun = begun_ if begun_ != null else {}
 		self.served = served_ if served_ != null else {}
 		self.candidates = candidates_ if candidates_ != null else {}
+		self.prominences = prominences_ if prominences_ != null else {}
 		self.model = model_
 		self.beats = beats_
 
@@ -224,10 +227,27 @@ class Performer:
 			return false
 		if self.model == null or self._leads(now) != "":
 			return true
+		if self._lulls(now):
+			return false
 		var there = self.stance == Director.musing(self.graph.stances)
 		if there and meta.request.kind == "transition" and self._muses(now):
 			return false
 		return Markov.performs(self.model, self.seed_, meta, Wanted.mode_at(self.track, now))
+
+	# Return whether the arms rest at a time: after a burst of one who talks, else after any act. In a thought acts are rare
+	# anyway.
+	func _lulls(now):
+		var variety = self.project.settings.variety
+		if self.graph.layer != "arms" or variety <= 0 or self.cues.size() == 0 or self._has_mused(now):
+			return false
+		var last = self.cues[-1]
+		var mode = Wanted.mode_at(self.track, now)
+		if now >= last.end + Director.MOST_LULL or mode == "thinking":
+			return false
+		var talks = mode == "talking"
+		if talks and last.action.kind == "transition":  # it opens a burst
+			return false
+		return now < last.end + Director.find_lull(self.seed_, last.meta, talks, variety)
 
 	# Return whether the arms take or keep the stance in which the character thinks.
 	func _muses(now):
@@ -522,14 +542,17 @@ class Performer:
 		var directed = meta.written and self.project.settings.variety > 0
 		if directed:  # the model's limb and tags are wishes, not orders
 			every = self._fresh(meta, every, now)
+			var fresh = {}
+			for a in every:
+				Util.add_to(fresh, a.id)
 			var found6 = []
 			for a in found:
-				if every.has(a):
+				if fresh.has(a.id):
 					found6.append(a)
 			found = found6
 			var found7 = []
 			for a in exact:
-				if every.has(a):
+				if fresh.has(a.id):
 					found7.append(a)
 			exact = found7
 			if every.size() == 0:
@@ -703,9 +726,15 @@ class Performer:
 			return 1.0 + self._count_fresh(action.end_stance, now) if talks else 1.0
 		if not self.ended.has(action.id):
 			return 1.0
-		var shows = Prominence.measure_prominence(self.project, action)
+		var shows = self._shows(action)
 		var needed = Director.repeat_interval(action.kind, shows, self.beats) * variety
 		return Director.freshness(now - self.ended[action.id], needed)
+
+	# Return how much an action stands out.
+	func _shows(action):
+		if not self.prominences.has(action.id):
+			self.prominences[action.id] = Prominence.measure_prominence(self.project, action)
+		return self.prominences[action.id]
 
 	# Return the actions that the character may do by itself; see `director`.
 	func _fresh(meta, candidates, now):
@@ -713,6 +742,8 @@ class Performer:
 		var layer = self.graph.layer
 		if meta.request.kind == "transition":
 			if now < self._moved() + Director.posture(layer) * variety:
+				return []
+			if layer == "arms" and now < self.acted + Director.LEAST_LULL * variety:
 				return []
 			if layer != "head":
 				return Util.list(candidates)
@@ -730,7 +761,7 @@ class Performer:
 		var converses = meta.request.kind == "fidget" and Wanted.mode_at(self.track, now) != "idle"
 		var out = []
 		for action in candidates:
-			var shows = Prominence.measure_prominence(self.project, action)
+			var shows = self._shows(action)
 			if (reminded or converses) and shows >= Director.STANDS_OUT:
 				continue
 			var needed = Director.repeat_interval(action.kind, shows, self.beats) * share
@@ -749,7 +780,7 @@ class Performer:
 			return every
 		var left = []
 		for a in every:
-			if Prominence.measure_prominence(self.project, a) < Director.STANDS_OUT:
+			if self._shows(a) < Director.STANDS_OUT:
 				left.append(a)
 		return left if left.size() > 0 else every
 
@@ -768,15 +799,18 @@ class Performer:
 
 	# Return how many gestures of a stance have not played for long enough.
 	func _count_fresh(stance, now):
-		var count = 0
 		if stance == null:
-			return count
+			return 0
 		var variety = self.project.settings.variety
-		for action in self.graph.of(stance, "gesture"):
-			var shows = Prominence.measure_prominence(self.project, action)
-			var needed = Director.repeat_interval("gesture", shows, self.beats) * variety
-			if not self.ended.has(action.id) or now >= self.ended[action.id] + needed:
-				count += 1
+		var count = self.graph.of(stance, "gesture").size()
+		for ident in self.ended:
+			var end = self.ended[ident]
+			var action = self.graph.actions.get(ident)
+			if action == null or action.kind != "gesture" or action.stance != stance:
+				continue
+			var shows = self._shows(action)
+			if now < end + Director.repeat_interval("gesture", shows, self.beats) * variety:
+				count -= 1
 		return count
 
 	# Return when the stance was last changed; minus infinity for never.
@@ -796,7 +830,7 @@ class Performer:
 			var action = self.graph.actions.get(ident)
 			if action == null or action.kind == "transition" or end < since:
 				continue
-			if Prominence.measure_prominence(self.project, action) >= Director.STANDS_OUT:
+			if self._shows(action) >= Director.STANDS_OUT:
 				return true
 		return false
 

@@ -24,6 +24,8 @@ const AFTER_BLINK = 1.0
 const BLINK_SPREAD = 0.7  # standard deviation of the gaps, times their mean
 const DOUBLES = 0.06  # share of blinks that follow the one before at once
 const DOUBLE = 0.4  # seconds after which they do
+const HALVES = 0.12  # share of blinks by themselves that are incomplete
+const HALF = 0.6  # how far these shut the eyes
 # Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
 # with what they look at.
 const FIXATION = 0.2
@@ -48,8 +50,8 @@ const STRETCH = 0.5
 #
 # modes: index in MODES. moods: valence, arousal, intensity. targets: what the gaze looks at. breaths: length s, depth. aversions:
 # end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up, degrees. blinks: 0
-# spontaneous, 1 on a stressed syllable, 2 requested. swells, emphases: of the face (`expressions`). drawn: seconds up to which
-# the lanes are filled; the rest is what they were drawn from.
+# spontaneous, 1 on a stressed syllable, 2 requested, 3 spontaneous and incomplete. swells, emphases: of the face (`expressions`).
+# drawn: seconds up to which the lanes are filled; the rest is what they were drawn from.
 class Schedule:
 	var end
 	var drawn
@@ -501,6 +503,8 @@ class LifeDraw:
 				return lane.plus(times, rows)
 			times.append(at)
 			var kind = 1.0 if at == heard else 0.0
+			if at == own and at != heard and Choice.chance_of(self.key("blink", number), "half") < HALVES:
+				kind = 3.0
 			rows.append([2.0 if at == wanted else kind])
 			last = at
 			number += 1

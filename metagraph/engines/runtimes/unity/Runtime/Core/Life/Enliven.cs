@@ -298,7 +298,8 @@ namespace Metagraph
             for (int n = PlainLists.Right(lane.Times, time) - 1; n >= 0 && time - lane.Times[n] < whole; n--)
             {
                 double gone = time - lane.Times[n];
-                found = Math.Max(found, Basics.Ease(Math.Min(gone / life.BlinkClose, (whole - gone) / life.BlinkOpen)));
+                double far = lane.Rows[n][0] == 3 ? ScheduleRules.Half : 1; // some are incomplete
+                found = Math.Max(found, far * Basics.Ease(Math.Min(gone / life.BlinkClose, (whole - gone) / life.BlinkOpen)));
             }
             return found;
         }
