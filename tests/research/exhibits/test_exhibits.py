@@ -36,7 +36,7 @@ from metagraph.research.exhibits.exhibit import (
 )
 from metagraph.research.exhibits.material import ExhibitMaterial, list_actors_rates, make_conversations
 from metagraph.research.exhibits.page import encode_exhibits, exhibit_as_text, format_exhibits
-from metagraph.research.exhibits.planning import FIGURE_11, find_fewest_transitions
+from metagraph.research.exhibits.planning import find_fewest_transitions
 from metagraph.research.exhibits.published import FIGURE_6, FIGURE_11, TABLE_1, TABLE_2
 from metagraph.research.exhibits.searching import Scarcity, exhibit_competing, make_scarce_takes
 
