@@ -11,6 +11,7 @@ when first needed, for work without a network.
 import ctypes
 import hashlib
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -77,7 +78,11 @@ def main(arguments):
             flush=True,
         )
     words = arguments or (["window", "--sample"] if screen else ["demo"])
-    return problem or subprocess.call([str(PYTHON), "-P", "-m", "app.cli", *words])
+    # What it prints to type starts it as it was started.
+    started = {"METAGRAPH_COMMAND": shlex.join([Path(sys.executable).name, sys.argv[0]])}
+    return problem or subprocess.call(
+        [str(PYTHON), "-P", "-m", "app.cli", *words], env={**os.environ, **started}
+    )
 
 
 # --- system libraries

@@ -324,7 +324,8 @@ def conversation() -> None:
 def motion_graph() -> None:
     """What counts as a jump between the sample's stances, and new motion from them."""
     from app.features.motion_graph.motion_graph_dialog import MotionGraphDialog
-    from metagraph.formats.store import make_paths_absolute, open_project, save_project
+    from metagraph.formats.project.paths import make_paths_absolute
+    from metagraph.formats.store import open_project, save_project
 
     samples = ROOT / "sample_clips"
     out = window()

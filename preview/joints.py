@@ -68,7 +68,6 @@ def find_side_signs(skeleton: Skeleton) -> NDArray[Any]:
     return out
 
 
-@lru_cache(maxsize=64)
 def find_head(skeleton: Skeleton) -> int | None:
     """Return the head's joint by name, or by its role ("JtSkullA"). None if there is none."""
     found = [

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import re
+import shlex
 import subprocess
 import sys
 import threading
@@ -54,6 +55,7 @@ class Started(list[Any]):
 
     def __call__(self, command: list[str], **more: Any) -> int:
         self.append([str(word) for word in command])
+        self.more = more
         return self.answers.pop(0) if self.answers else 0
 
 
@@ -328,6 +330,8 @@ def test_it_starts_the_window_or_the_same_job_without_one(
     monkeypatch.setattr(run.subprocess, "call", calls)
     assert run.main(arguments) == 5
     assert calls[0][1:] == ["-P", "-m", "app.cli", *started]
+    typed = shlex.split(calls.more["env"]["METAGRAPH_COMMAND"])
+    assert typed == [Path(sys.executable).name, sys.argv[0]], "what it prints to type starts it again"
 
 
 def test_the_tests_are_lint_types_imports_and_pytest_and_one_failure_is_a_failure(

@@ -19,13 +19,9 @@ from metagraph.errors import FileError
 from metagraph.formats.locking import Lock, make_owner
 from metagraph.formats.outputs import declare_inputs, declare_updates, make_locked_error
 from metagraph.formats.project.history import UndoStep
+from metagraph.formats.project.paths import list_project_files
 from metagraph.formats.project.versions import write_project
-from metagraph.formats.store import (
-    compute_content_digest,
-    compute_file_digest,
-    encode_project,
-    list_project_files,
-)
+from metagraph.formats.store import compute_content_digest, compute_file_digest, encode_project
 from metagraph.graph.model import Project
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from app.project.opening import open_whole
 from metagraph.formats.outputs import declare_inputs
-from metagraph.formats.store import list_project_files
+from metagraph.formats.project.paths import list_project_files
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance
 from metagraph.graph.words import MODES

@@ -82,9 +82,11 @@ def run(options: Namespace) -> int:
             )
         return 0
     if options.project is None or options.out is None:
+        from app.typed_command import list_program_words, quote_command
+
         print(
-            "metagraph export: give a project and a folder, such as: metagraph export "
-            "my.metagraph.yaml -o game/",
+            "metagraph export: give a project and a folder, such as: "
+            f"{quote_command(list_program_words())} export my.metagraph.yaml -o game/",
             file=sys.stderr,
         )
         return 2

@@ -16,6 +16,7 @@ from metagraph.formats.import_words import count_alike, describe_import, list_re
 from metagraph.formats.imports import import_files
 from metagraph.formats.project.pieces import read_other_project
 from metagraph.formats.store import SUFFIX
+from metagraph.graph.editing.one_sided import describe_one_sided, list_one_sided
 from metagraph.graph.editing.taking import describe_taking
 from metagraph.graph.model import Project
 
@@ -65,8 +66,11 @@ def _taken(project: Project, path: Path, other: Path, options: Namespace) -> tup
 
 def run(options: Namespace) -> int:
     if not options.paths and options.labels is None:
+        from app.typed_command import list_program_words, quote_command
+
         print(
-            "metagraph import: give clips or a folder, such as: metagraph import my.metagraph.yaml clips/",
+            "metagraph import: give clips or a folder, such as: "
+            f"{quote_command(list_program_words())} import my.metagraph.yaml clips/",
             file=sys.stderr,
         )
         return 2
@@ -79,6 +83,7 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
     path = output.path
     rows = read_labels(options.labels) if options.labels is not None else ()
     project = open_for_command(path) if path.is_file() else Project(name=path.name.removesuffix(SUFFIX))
+    known = list_one_sided(project)
     others = [other for other in options.paths if other.name.endswith(SUFFIX)]
     files = [file for file in options.paths if file not in others]
     taken: list[str] = []
@@ -119,6 +124,11 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
     project, placed, left = apply_labels(project, rows, fresh)
     for why in left:
         print(f"not labelled: {why}", file=sys.stderr)
+    one_sided = [one for one in list_one_sided(project) if one not in known]
+    for one in one_sided:
+        print(f"one arm: {describe_one_sided(one)}", file=sys.stderr)
+    if one_sided:
+        print(f"note: metagraph label {path} --twins adds mirrored twins for the other arm", file=sys.stderr)
     if result.loaded or placed or taken:
         output.save(project)
     data = {
@@ -128,6 +138,7 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
         "retargeted": result.retargeted,
         **({"labelled": placed, "not_labelled": list(left)} if options.labels is not None else {}),
         **({"taken": taken} if taken else {}),
+        **({"one arm": {one.name: one.lacks for one in one_sided}} if one_sided else {}),
         "failures": list(result.failures),
         "notes": list(result.notes),
         "remedies": [remedy.command for remedy in list_remedies(result)],

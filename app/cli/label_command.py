@@ -5,14 +5,17 @@ reason.
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 import time
 from argparse import Namespace
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from app.cli.progress_line import ProgressLine
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from app.cli.outputs import ProjectOutput
@@ -117,10 +120,7 @@ def run(options: Namespace) -> int:
 
 def _labelled(options: Namespace, output: ProjectOutput) -> int:
     from app.authoring.bridging import join_labelled
-    from app.cli.command_output import say
-    from app.cli.label_pictures import draw_label_pictures
     from app.cli.label_report import format_label_report
-    from app.cli.showing_command import name_showing_command
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.import_words import count_alike
     from metagraph.graph.check import check_project, list_grave_problems
@@ -141,6 +141,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         patterns=patterns,
         examples=examples,
         sources=tuple(options.sources or SOURCES),
+        progress=ProgressLine(options, "Measuring clips").tell,
     )
     taken = accept(project, found, options.above)
     labelled, bridges = join_labelled(begun.before, taken.project, not options.no_bridges)
@@ -152,47 +153,36 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         output.save(taken.project, source if source.is_file() else None)
     changed = not begun.merged or bool(begun.clips)  # if not, the report of what was labelled earlier stays
     place = _free_report(path)
-    seen = _rehearse(options, taken.project) if options.play > 0 and changed else []
-    faults = [p.message for p in seen if p.severity == "error"]
     gaps = [] if options.no_bridges else describe_unbridged(taken.project)
+    joined = describe_bridges(taken.project, bridges)
+    lists: dict[str, Sequence[str]] = {
+        "Blended, because no clip leads there": joined,
+        "Not joined to the other stances": gaps,
+        "Mirrored for the other arm" if options.twins else "Only one arm": [
+            describe_one_sided(one) for one in one_sided
+        ],
+        "While importing": count_alike(notes),
+    }
+    drawn = _draw(options, taken.project, path, [*found.proposals]) if changed else {}
+
+    def write_report(lists: Mapping[str, Sequence[str]]) -> None:
+        page = format_label_report(taken.project, found, taken, drawn, lists, path)
+        write_atomically(place, page.encode())
+
     if changed:
-        lists = {
-            "Seen when it was played": [p.message for p in seen],
-            "Blended, because no clip leads there": describe_bridges(taken.project, bridges),
-            "Not joined to the other stances": gaps,
-            "Mirrored for the other arm" if options.twins else "Only one arm": [
-                describe_one_sided(one) for one in one_sided
-            ],
-            "While importing": count_alike(notes),
-        }
-        drawn = (
-            {}
-            if options.no_pictures
-            else draw_label_pictures(taken.project, path.resolve().parent, [*found.proposals])
-        )
-        write_atomically(place, format_label_report(taken.project, found, taken, drawn, lists, path).encode())
+        write_report(lists)
     look = [p for p in found.doubtful if needs_look(p, taken.left)]
     errors = [p.message for p in list_grave_problems(check_project(taken.project))]
     seconds = time.perf_counter() - began
-    for note in count_alike(notes):
-        print(f"note: {note}", file=sys.stderr)
-    for stance, rest in taken.held.items():
-        if (made := taken.project.stance(stance)) is not None:
-            print(f"held: {made.name}: {rest.reason}", file=sys.stderr)
-    for line in describe_bridges(taken.project, bridges):
-        print(f"bridged: {line}", file=sys.stderr)
-    for line in gaps:
-        print(f"no bridge: {line}", file=sys.stderr)
+    held = {s.name: r.reason for i, r in taken.held.items() if (s := taken.project.stance(i)) is not None}
+    _tell("note", count_alike(notes))
+    _tell("held", [f"{name}: {reason}" for name, reason in held.items()])
+    _tell("bridged", joined)
+    _tell("no bridge", gaps)
     _tell_one_sided(one_sided, options.twins)
-    for why, clips in group_reasons(found.aside):
-        print(f"skipped: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
-    for why, clips in group_reasons(taken.left):
-        print(f"left: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
-    for message in errors:
-        print(f"problem: {message}", file=sys.stderr)
-    for problem in seen:
-        command = name_showing_command(taken.project, problem, path)
-        print(f"seen: {problem.message}{f'  [{command}]' if command else ''}", file=sys.stderr)
+    for word, reasons in (("skipped", found.aside), ("left", taken.left)):
+        _tell(word, [f"{_several(project, clips)}: {why}" for why, clips in group_reasons(reasons)])
+    _tell("problem", errors)
     words = (
         f"{path}: {len(taken.placed)} of {len(found.proposals)} clips labelled in {seconds:.1f} s, "
         f"{len(look)} need a look" + (f"\n{place}" if changed else "")
@@ -203,24 +193,27 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         "report": str(place) if changed else None,
         "labelled": len(taken.placed),
         "left": {names[c]: why for c, why in taken.left.items()},
-        "held": {
-            s.name: r.reason for i, r in taken.held.items() if (s := taken.project.stance(i)) is not None
-        },
-        "bridged": describe_bridges(taken.project, bridges),
+        "held": held,
+        "bridged": joined,
         "no bridge": gaps,
         "one arm": {one.name: {"lacks": one.lacks, "actions": len(one.actions)} for one in one_sided},
         "twins": _count_lacking(one_sided) if options.twins else 0,
         "aside": {project.clips[c].name: why for c, why in found.aside.items()},
         "look": [names[p.clip] for p in look],
         "errors": errors,
-        "seen": [p.message for p in seen],
         "seconds": round(seconds, 2),
     }
     if begun.merged:
         told_of, data_of = _told_of_merging(begun, path)
         words, data = f"{words}\n{told_of}", data | data_of
-    say(options, words, data)
-    return _exit_code(len(taken.left), len(errors), len(faults))
+    if not options.json:
+        print(words, flush=True)  # all is written; who does not wait for what is seen may stop it
+    seen = _rehearse(options, taken.project, path) if options.play > 0 and changed else []
+    if seen:
+        write_report({"Seen when it was played": [p.message for p in seen], **lists})
+    if options.json:
+        print(json.dumps({**data, "seen": [p.message for p in seen]}))
+    return _exit_code(len(taken.left), len(errors), sum(p.severity == "error" for p in seen))
 
 
 def _count_lacking(one_sided: Sequence[OneSided]) -> int:
@@ -230,8 +223,7 @@ def _count_lacking(one_sided: Sequence[OneSided]) -> int:
 def _tell_one_sided(one_sided: Sequence[OneSided], mirrored: bool) -> None:
     from metagraph.graph.editing.one_sided import describe_one_sided
 
-    for one in one_sided:
-        print(f"{'mirrored' if mirrored else 'one arm'}: {describe_one_sided(one)}", file=sys.stderr)
+    _tell("mirrored" if mirrored else "one arm", map(describe_one_sided, one_sided))
     if one_sided and not mirrored:
         count = _count_lacking(one_sided)
         print(f"note: --twins adds {count} mirrored clips for the other arm", file=sys.stderr)
@@ -245,19 +237,36 @@ def add_twins(project: Project, one_sided: Sequence[OneSided], folder: Path) -> 
     from metagraph.graph.edit_error import EditError
     from metagraph.graph.editing.mirroring import make_twin_clips
 
-    made = []
-    for one in one_sided:
-        for action in one.actions:
-            with suppress(EditError):
-                made += [(twin, write_twin(twin, folder)) for twin in make_twin_clips(project, [action])]
-    return with_twins(project, made) if made else project
+    actions = [action for one in one_sided for action in one.actions]
+    try:
+        made = [(twin, write_twin(twin, folder)) for twin in make_twin_clips(project, actions, skip=True)]
+    except EditError:
+        return project
+    return with_twins(project, made)
 
 
-def _rehearse(options: Namespace, project: Project) -> list[Problem]:
-    from app.cli.progress_line import ProgressLine
+def _rehearse(options: Namespace, project: Project, path: Path) -> list[Problem]:
+    """Play a project that was written, and print what is seen."""
+    from app.cli.showing_command import name_showing_command
     from metagraph.playback.rehearsal import rehearse
 
-    return rehearse(project, options.play, ProgressLine(options, "Playing it to find faults").tell)
+    seen = rehearse(project, options.play, ProgressLine(options, "Playing it to find faults").tell)
+    for problem in seen:
+        command = name_showing_command(project, problem, path)
+        _tell("seen", [f"{problem.message}{f'  [{command}]' if command else ''}"])
+    return seen
+
+
+def _draw(options: Namespace, project: Project, path: Path, clips: Sequence[str]) -> Mapping[str, Any]:
+    from app.cli.label_pictures import draw_label_pictures
+
+    tell = ProgressLine(options, "Drawing pictures").tell
+    return {} if options.no_pictures else draw_label_pictures(project, path.resolve().parent, clips, tell)
+
+
+def _tell(word: str, lines: Iterable[str]) -> None:
+    for line in lines:
+        print(f"{word}: {line}", file=sys.stderr)
 
 
 def _exit_code(left: int, errors: int, faults: int) -> int:
@@ -292,7 +301,10 @@ def _told_of_merging(begun: Begun, path: Path) -> tuple[str, dict[str, int]]:
     if begun.skipped:
         words += f"; skipped {begun.skipped} clips that it already has"
     if begun.waiting:
-        words += f"; {begun.waiting} of its clips have no label yet: metagraph label {path}"
+        from app.typed_command import list_program_words, quote_command
+
+        command = quote_command([*list_program_words(), "label", str(path)])
+        words += f"; {begun.waiting} of its clips have no label yet: {command}"
     if not begun.clips:
         words += (
             "; nothing was changed. Add --overwrite to make the project again and keep this one as a version"
@@ -300,7 +312,8 @@ def _told_of_merging(begun: Begun, path: Path) -> tuple[str, dict[str, int]]:
     return words, counts
 
 
-def _several(names: Sequence[str]) -> str:
+def _several(project: Project, clips: Iterable[str]) -> str:
+    names = [project.clips[clip].name for clip in clips]
     return (
         names[0]
         if len(names) == 1
@@ -367,13 +380,16 @@ def _begun(options: Namespace, path: Path) -> Begun:
         return Begun(project, None, [], project)
     merged = path.is_file() and not options.overwrite
     before = open_for_command(path) if merged else Project(name=path.name.removesuffix(SUFFIX))
+    line = ProgressLine(options, "Reading clips")
     result = import_files(
         before,
         path.resolve().parent,
         [source],
+        lambda done, total, file: line.tell(done, total, file.name),
         retarget="yes" if options.retarget else "no",
         contacts=not options.no_contacts,
     )
+    line.finish()
     if not result.loaded:
         why = result.failures[0] if result.failures else "has no clips"
         raise FileError(source, why, "while importing it", describe_clip_files())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +12,12 @@ from metagraph.graph.model import Project
 SIZE = 192  # pixels
 
 
-def draw_label_pictures(project: Project, folder: Path, clips: Iterable[str]) -> Mapping[str, Any]:
-    """Return clip or stance -> `[H, W, 4]` uint8; none if nothing can be drawn here."""
+def draw_label_pictures(
+    project: Project, folder: Path, clips: Sequence[str], tell: Callable[[int, int], None]
+) -> Mapping[str, Any]:
+    """Return clip or stance -> `[H, W, 4]` uint8; none if nothing can be drawn here. tell: called with how
+    many clips are drawn, and of how many.
+    """
     from app.cli.render_command import load_figure
     from metagraph.errors import FileError
     from preview.offscreen import Offscreen, OpenGLError
@@ -24,7 +28,8 @@ def draw_label_pictures(project: Project, folder: Path, clips: Iterable[str]) ->
     try:
         figure = load_figure(project, folder)
         with Offscreen(SIZE, SIZE) as stage:
-            for clip in clips:
+            for n, clip in enumerate(clips, 1):
+                tell(n, len(clips))
                 if (motion := project.clips[clip].motion) is not None:
                     out[clip] = draw_clip_thumbnail(stage, figure, motion, style)
             for graph in project.graphs.values():

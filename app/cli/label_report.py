@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.label_page import SCRIPT, STYLE
-from app.cli.showing_command import name_window_command, quote_command
+from app.cli.showing_command import list_shared_names, name_window_command
 from app.look.plural import count_clips
 from app.translation import tr_plural
+from app.typed_command import quote_command
 from metagraph.common.xml_text import escape
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.suggest.estimate import Belief
@@ -151,13 +152,16 @@ def _cards(
     pictures: Mapping[str, Any],
     path: Path | None,
 ) -> str:
-    made = "".join(_card(project, found, p, taken, pictures, path) for p in proposals)
+    some = list(proposals)
+    commands = list_open_commands(taken.project, [p.clip for p in some], path) if path is not None else {}
+    made = "".join(_card(project, found, p, taken, pictures, commands) for p in some)
     return f"<div class='cards'>{made}</div>"
 
 
-def open_command(project: Project, clip: str, path: Path) -> str:
-    """Return what to type in a terminal to see a clip in the window."""
-    return quote_command(name_window_command(project, clip, path.resolve()))
+def list_open_commands(project: Project, clips: Iterable[str], path: Path) -> dict[str, str]:
+    """Return what to type in a terminal to see each clip in the window."""
+    whole, shared = path.resolve(), list_shared_names(project)
+    return {clip: quote_command(name_window_command(project, clip, whole, shared)) for clip in clips}
 
 
 def _data_of(project: Project, found: Proposals, p: Proposal, taken: AcceptedProposals) -> str:
@@ -182,7 +186,7 @@ def _card(
     p: Proposal,
     taken: AcceptedProposals,
     pictures: Mapping[str, Any],
-    path: Path | None,
+    commands: Mapping[str, str],
 ) -> str:
     kind = p.kind.value
     where = found.places[p.stance.value].name if p.stance is not None else "no stance"
@@ -222,8 +226,8 @@ def _card(
         f"{kind}</span>"
     )
     opening = ""
-    if path is not None:
-        command = escape(open_command(taken.project, p.clip, path), quote=True)
+    if p.clip in commands:
+        command = escape(commands[p.clip], quote=True)
         opening = f"<button class='open' title='{command}'>Open in the window…</button>"
         opening += f"<code hidden>{command}</code>"
     return (

@@ -119,8 +119,9 @@ class ProjectOutput:
         """
         from app.project.version_count import count_kept_versions
         from metagraph.errors import FileError
+        from metagraph.formats.project.paths import move_project
         from metagraph.formats.project.versions import write_project
-        from metagraph.formats.store import compute_file_digest, encode_project, move_project
+        from metagraph.formats.store import compute_file_digest, encode_project
 
         if compute_file_digest(self.path) != self._digest:
             raise FileError(

@@ -14,6 +14,7 @@ from typing import Any
 
 from app.cli.outputs import claim_outputs, offer_overwrite
 from app.cli.system_libraries import describe_missing_library
+from app.typed_command import list_program_words, quote_command
 from metagraph import __version__
 from metagraph.common.network_paths import allow
 from metagraph.common.programs import leave_working_folder
@@ -144,10 +145,11 @@ def _parser(chosen: str) -> argparse.ArgumentParser:
     """Return the parser of all commands, with the options of the chosen one alone: the others' modules are
     not imported.
     """
+    started = quote_command(list_program_words())
     parser = argparse.ArgumentParser(
-        prog="metagraph",
+        prog=started,
         description=DESCRIPTION,
-        epilog=EXAMPLES,
+        epilog=EXAMPLES.replace("  metagraph ", f"  {started} "),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"metagraph {__version__}")

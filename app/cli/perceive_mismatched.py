@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable
 from os.path import relpath
 from pathlib import Path
+from re import fullmatch
+from typing import TYPE_CHECKING
+
+from metagraph.errors import FileError
+
+if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from metagraph.graph.conversation.model import Conversation
 
 Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
 
@@ -28,6 +36,20 @@ def add_arguments(action: Action, make: Callable[[Namespace], int]) -> None:
         help="also ask about motion of a file for each side, from 'motion-graph synthesize' or 'generate'; "
         "may be given several times",
     )
+    made.add_argument(
+        "--graph",
+        action="append",
+        default=[],
+        metavar="NAME=FOLDER",
+        help="also make and ask about motion of a motion graph of this folder's takes",
+    )
+    made.add_argument(
+        "--model",
+        action="append",
+        default=[],
+        metavar="NAME=FILE",
+        help="also make and ask about motion of this learned model (.mgmodel); may be given several times",
+    )
     made.add_argument("--no-planner", action="store_true", help="do not ask about the planner's motion")
     made.add_argument("--seconds", type=float, default=8.0, help="length of a stretch (default: 8)")
     made.add_argument("--items", type=int, default=12, help="number of stretches at most (default: 12)")
@@ -38,6 +60,38 @@ def add_arguments(action: Action, make: Callable[[Namespace], int]) -> None:
     made.add_argument(
         "--into", type=Path, metavar="FOLDER", help="also render the study into this folder, as 'make' does"
     )
+
+
+def _make_motion(
+    options: Namespace, talk: Conversation, folder: Path, known: set[str]
+) -> dict[str, list[Path]]:
+    """Make the motion of graphs and models that are asked for; return system -> a file for each side. Raises
+    FileError, ValueError.
+    """
+    from app.cli.mismatched_motion import write_graph_motion, write_model_motion
+    from metagraph.formats.outputs import claim
+
+    asked = [(words, True) for words in options.graph] + [(words, False) for words in options.model]
+    for words, is_graph in asked:
+        name, found, path = words.partition("=")
+        if not (found and path and fullmatch(r"[\w-]+", name)) or name in known:
+            raise ValueError(f"--graph and --model take another name and a path, as NAME=PATH, not {words!r}")
+        known.add(name)
+        if not Path(path).exists():
+            raise FileError(path, "does not exist", f"--{'graph' if is_graph else 'model'}")
+        claim(*(folder / f"{name}_{n}.glb" for n in range(1, len(talk.sides) + 1)))
+    if asked:
+        folder.mkdir(parents=True, exist_ok=True)
+    out = {}
+    for words, is_graph in asked:
+        name, _, path = words.partition("=")
+        print(f"making the motion of '{name}'", file=sys.stderr)
+        out[name] = (
+            write_graph_motion(talk, Path(path), folder / name)
+            if is_graph
+            else write_model_motion(talk, options.project.resolve().parent, Path(path), folder / name)
+        )
+    return out
 
 
 def write_mismatched(options: Namespace, make: Callable[[Namespace], int]) -> int:
@@ -69,6 +123,8 @@ def write_mismatched(options: Namespace, make: Callable[[Namespace], int]) -> in
                 f"NAME=FILE,FILE, not {words!r}"
             )
         systems[name] = {**base, "motion": [Path(relpath(p.resolve(), folder)).as_posix() for p in paths]}
+    for name, paths in _make_motion(options, talk, folder / "motion", set(systems)).items():
+        systems[name] = {**base, "motion": [Path(relpath(p.resolve(), folder)).as_posix() for p in paths]}
     text = make_mismatched_plan(
         f"Which sound belongs to the motion? {options.conversation}",
         options.participants,
@@ -83,10 +139,13 @@ def write_mismatched(options: Namespace, make: Callable[[Namespace], int]) -> in
     if options.into is not None:
         options.plan = options.out
         return make(options)
+    from app.typed_command import list_program_words, quote_command
+
+    command = quote_command([*list_program_words(), "study", "perceive", "make", str(options.out)])
     say(
         options,
         f"{options.out}: {len(systems)} systems, {len(plan.items)} stretches. Render it with: "
-        f"metagraph study perceive make {options.out} --into FOLDER",
+        f"{command} --into FOLDER",
         {"plan": str(options.out), "systems": list(systems), "items": len(plan.items)},
     )
     return 0

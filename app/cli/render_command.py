@@ -17,7 +17,7 @@ from app.look.names import name_node_rows
 from app.stage.filming import Seen, make_project_figure, measure_bounds, render_pictures
 from app.stage.playback_source import ASIDE, ShownPlayback, play_clip_alone
 from metagraph.formats.outputs import claim, declare_inputs
-from metagraph.formats.store import list_project_files
+from metagraph.formats.project.paths import list_project_files
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.progress_line import ProgressLine
+from app.cli.progress_line import ProgressLine, describe_seconds
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.research.exhibits.exhibit import Exhibit, MadeExhibit
@@ -67,32 +67,37 @@ def run(options: Namespace) -> int:
         raise ValueError("give a folder for the report with --into FOLDER, or use --list")
     claim(options.into / "report.html", options.into / "report.json")
     material = _material(options)
-    made = []
-    for exhibit in exhibits:
-        if sys.stderr.isatty() and not options.json:
-            print(f"{exhibit.name} ...", file=sys.stderr, flush=True)
-        shown, seconds = _made(exhibit, material)
-        made.append((exhibit, shown, seconds))
     told = {"Metagraph": __version__, "project": material.project.name}
     told["conversations"] = material.told or "synthetic"
-    content = {
-        "report.html": format_exhibits(made, told),
-        "report.json": json.dumps(
-            {**told, "exhibits": encode_exhibits(made), "notes": material.notes}, indent=1
-        )
-        + "\n",
-    }
-    write_together(options.into, {name: text.encode() for name, text in content.items()})
+    made: list[tuple[Exhibit, MadeExhibit, float]] = []
+    written: list[str] = []
+    for exhibit in exhibits:
+        if sys.stderr.isatty() and not options.json:
+            far = _estimate(exhibits, made, options.full)
+            print(f"{exhibit.name}: {far} ...", file=sys.stderr, flush=True)
+        shown, seconds = _made(exhibit, material)
+        made.append((exhibit, shown, seconds))
+        encoded = encode_exhibits(made)
+        data = json.dumps({**told, "exhibits": encoded, "notes": material.notes}, indent=1) + "\n"
+        page = format_exhibits(made, told)
+        content = {"report.html": page.encode(), "report.json": data.encode()}
+        written = [str(path) for path in write_together(options.into, content)]  # who stops it keeps these
+        if not options.json:
+            print(f"{exhibit_as_text(exhibit, shown)}\n", flush=True)
     for note in dict.fromkeys(material.notes):
         print(f"note: {note}", file=sys.stderr)
-    words = [exhibit_as_text(e, s) for e, s, _ in made]
-    written = [str(options.into / name) for name in content]
-    say(
-        options,
-        "\n\n".join([*words, "\n".join(written)]),
-        {"exhibits": encode_exhibits(made), "written": written},
-    )
+    say(options, "\n".join(written), {"exhibits": encode_exhibits(made), "written": written})
     return 3 if any(s.missing for _, s, _ in made) else 0
+
+
+def _estimate(
+    exhibits: Sequence[Exhibit], made: Sequence[tuple[Exhibit, MadeExhibit, float]], full: bool
+) -> str:
+    """Return how far it is, and how long the rest will take if it takes longer as what was made did."""
+    usual = [e.seconds[full] for e in exhibits]
+    slower = sum(seconds for *_, seconds in made) / sum(usual[: len(made)]) if made else 1.0
+    left = describe_seconds(slower * sum(usual[len(made) :]))
+    return f"{len(made) + 1} of {len(exhibits)}, about {left} left"
 
 
 def _list(options: Namespace, exhibits: Sequence[Exhibit]) -> int:

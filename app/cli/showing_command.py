@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import shlex
-import subprocess
+from collections import Counter
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from app.typed_command import list_program_words, quote_command
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.graph.model import Project
@@ -22,22 +23,23 @@ def name_showing_command(project: Project, problem: Problem, path: Path) -> str:
     action = project.action(problem.action or "")
     if problem.moment is not None:
         start = f"{max(0.0, problem.moment - BEFORE):.1f}"
-        words = ["metagraph", "render", str(path), "--start", start, "-s", f"{LASTS:g}", "-o", "seen.mp4"]
+        shown = ["--start", start, "-s", f"{LASTS:g}", "-o", "seen.mp4"]
+        words = [*list_program_words(), "render", str(path), *shown]
     elif problem.code.startswith(("play-", "clip-jump")) and action and action.clip in project.clips:
-        words = name_window_command(project, action.clip, path)
+        words = name_window_command(project, action.clip, path, list_shared_names(project))
     else:
         return ""
     return quote_command(words)
 
 
-def name_window_command(project: Project, clip: str, path: Path) -> list[str]:
-    """Return the words of the command that opens the window on a clip."""
+def list_shared_names(project: Project) -> set[str]:
+    """Return the names that several clips have."""
+    return {name for name, n in Counter(e.name for e in project.clips.values()).items() if n > 1}
+
+
+def name_window_command(project: Project, clip: str, path: Path, shared: Collection[str]) -> list[str]:
+    """Return the words of the command that opens the window on a clip. shared: names of several clips."""
     name = project.clips[clip].name
-    if name.startswith("-") or sum(entry.name == name for entry in project.clips.values()) > 1:
+    if name.startswith("-") or name in shared:
         name = clip
-    return ["metagraph", "window", str(path), "--clip", name]
-
-
-def quote_command(words: list[str]) -> str:
-    """Return a command as this system's terminal reads it."""
-    return subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)
+    return [*list_program_words(), "window", str(path), "--clip", name]

@@ -32,7 +32,9 @@ def add_arguments(action: Action) -> None:
     _who(deleted)
     deleted.add_argument("--yes", action="store_true", help="do not ask for confirmation")
 
-    brought = action("import", "add a participant's log of tasks done in Unreal, Unity or Godot", merge_sites)
+    brought = action(
+        "import", "add a participant's log of tasks done in Unreal, Unity, Godot or Blender", merge_sites
+    )
     _who(brought)
     brought.add_argument("log", type=Path, help="the log file that the engine's script wrote")
     looked = action(

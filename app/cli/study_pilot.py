@@ -34,6 +34,7 @@ def run_pilot(options: Namespace) -> int:
     ValueError.
     """
     from app.cli.command_output import say
+    from metagraph.research.study.statistics.distributions import load_scipy
     from metagraph.research.study.study_plan import FILE, read_study
 
     if not (options.folder / FILE).is_file():
@@ -42,6 +43,7 @@ def run_pilot(options: Namespace) -> int:
     if options.make:
         say(options, f"{study.path}: {study.plan.title}", {"study": str(study.path)})
         return 0
+    load_scipy("special")  # before anybody takes part: the report at the end needs it
     if not options.score:
         participant = options.participant or find_next_participant(study)
         study.plan.known(participant)

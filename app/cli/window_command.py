@@ -31,11 +31,14 @@ def run(options: Namespace) -> int:
     project, clips = sort_paths(options.paths)
     if not has_screen() and os.environ.get("QT_QPA_PLATFORM") is None:
         if clips:
+            from app.typed_command import list_program_words, quote_command
+
+            command = quote_command([*list_program_words(), "label", str(clips[0])])
             raise FileError(
                 clips[0],
                 "there is no screen to open a window on",
                 "while opening it",
-                f"Label clips without a window: metagraph label {clips[0]}",
+                f"Label clips without a window: {command}",
             )
         if not options.json:
             print("There is no screen, so Metagraph runs the demo without a window.\n")

@@ -245,6 +245,7 @@ def make_style_sheet(look: WindowTheme) -> str:
     QScrollBar::add-line, QScrollBar::sub-line, QScrollBar::add-page, QScrollBar::sub-page {{ background: none; width: 0; height: 0; }}
     QProgressBar {{ background: {t.field}; border: none; border-radius: 5px; text-align: center; max-height: 14px; }}
     QProgressBar::chunk {{ background: {t.dim}; border-radius: 4px; }}
+    QProgressBar[textVisible="true"]::chunk {{ background: {t.hover if t.high else t.line}; }}
     QTabBar::tab {{ background: transparent; color: {t.dim}; padding: 6px 14px; border-radius: 6px; margin: 2px; }}
     QTabBar::tab:selected {{ background: {t.hover}; color: {t.text}; }}
     QTabWidget::pane {{ border: none; }}

@@ -84,7 +84,8 @@ def _changed_actions(before: Project, after: Project) -> list[tuple[Action, Acti
             continue
         if old.actions.keys() != new.actions.keys() or old.stances.keys() != new.stances.keys():
             return None
-        ids = compress(new.actions, map(is_not, (old.actions[i] for i in new.actions), new.actions.values()))
+        was = map(old.actions.__getitem__, new.actions)
+        ids = compress(new.actions, map(is_not, was, new.actions.values()))
         found += [(old.actions[i], new.actions[i]) for i in ids if old.actions[i] != new.actions[i]]
     return found
 

@@ -36,10 +36,12 @@ from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.locking import Lock
 from metagraph.formats.new_file import PRIVATE
+from metagraph.formats.project.clip_loading import Opened
 from metagraph.formats.project.history import UndoStep
+from metagraph.formats.project.paths import make_paths_absolute
 from metagraph.formats.project.versions import is_version
 from metagraph.formats.recovery import Left
-from metagraph.formats.store import SUFFIX, Opened, make_paths_absolute, read_project
+from metagraph.formats.store import SUFFIX, read_project
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:

@@ -22,8 +22,8 @@ from metagraph.common.wording import Phrase
 from metagraph.formats.clip_readers import describe_clip_files, list_clip_suffixes
 from metagraph.formats.import_words import Remedy, count_alike, describe_import, describe_imported
 from metagraph.formats.imports import BY_KNOWN_MAP, Imported, Strangers, import_files
+from metagraph.formats.project.clip_loading import Opened, load_returned
 from metagraph.formats.repairs import list_repairs
-from metagraph.formats.store import Opened, load_returned
 from metagraph.formats.takes import NAME
 from metagraph.graph.model import Project
 
@@ -237,7 +237,7 @@ class Importing(QObject):
         folder = Path(name)
 
         def work(job: WindowJob) -> Project:
-            from metagraph.formats.store import relocate
+            from metagraph.formats.project.clip_loading import relocate
 
             return relocate(project, self.document.folder, folder, job.tell)
 

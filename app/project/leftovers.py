@@ -16,10 +16,11 @@ from metagraph.errors import FileError
 from metagraph.formats.atomic import sweep
 from metagraph.formats.locking import Holder, Lock, Owner
 from metagraph.formats.new_file import access_of
+from metagraph.formats.project.clip_loading import load_returned
 from metagraph.formats.project.journal_register import JournalRegister
 from metagraph.formats.project.journal_search import find_all_journals, find_journals_for, project_of
 from metagraph.formats.recovery import DAMAGED, Left, find_journals_in, order_journals, read_journal, retire
-from metagraph.formats.store import SUFFIX, load_returned, save_project
+from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 

@@ -10,7 +10,7 @@ from app.project.jobs import WindowJob
 from app.project.opening import load_whole, take_over
 from app.translation import tr
 from metagraph.common.network_paths import allow
-from metagraph.formats.store import describe_closed_paths, list_closed_paths, reopen_paths
+from metagraph.formats.project.paths import describe_closed_paths, list_closed_paths, reopen_paths
 from metagraph.graph.model import Project
 
 SHOWN = 5  # names in the question

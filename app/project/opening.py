@@ -7,9 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from metagraph.errors import FileError
+from metagraph.formats.project.clip_loading import Opened, load_motions
 from metagraph.formats.project.history import UndoStep, list_undo_steps, with_motion
 from metagraph.formats.recovery import Left
-from metagraph.formats.store import Opened, load_motions, open_project
+from metagraph.formats.store import open_project
 from metagraph.graph.face.rig import with_morphs
 from metagraph.graph.model import Project
 

@@ -15,7 +15,7 @@ from app.project.jobs import WindowJob
 from app.project.opening import load_whole, with_motion_of
 from app.project.writing import FileChangedError, find_file_change
 from app.translation import tr
-from metagraph.formats.store import Opened
+from metagraph.formats.project.clip_loading import Opened
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:

@@ -15,9 +15,9 @@ from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.new_file import PRIVATE
+from metagraph.formats.project.clip_loading import load_motions
 from metagraph.formats.project.history import UndoStep, with_motion
 from metagraph.formats.project.kept_steps import MAX_BYTES, decode_steps, encode_steps
-from metagraph.formats.store import load_motions
 from metagraph.graph.model import Project
 
 MAX_PROJECTS = 50  # the steps of those saved last are kept

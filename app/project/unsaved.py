@@ -20,10 +20,11 @@ from app.project.leftovers import (
 )
 from app.project.opening import load_recovered
 from app.translation import tr, tr_plural
+from metagraph.formats.project.clip_loading import Opened
 from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.journal_search import project_of
+from metagraph.formats.project.paths import make_paths_absolute
 from metagraph.formats.recovery import Left
-from metagraph.formats.store import Opened, make_paths_absolute
 
 
 class Unsaved(QObject):

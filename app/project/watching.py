@@ -20,7 +20,7 @@ from app.project.jobs import Jobs, WindowJob
 from app.project.opening import take_over
 from app.translation import tr, tr_error
 from metagraph.formats.imports import Imported, import_files
-from metagraph.formats.store import Opened, load_returned
+from metagraph.formats.project.clip_loading import Opened, load_returned
 from metagraph.graph.model import ClipEntry
 
 EVERY = 1500  # ms between two checks; files on network drives give no notice of changes

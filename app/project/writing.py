@@ -15,13 +15,13 @@ from metagraph.formats.new_file import Access
 from metagraph.formats.project.appended_file import Identity, find_moved_folder, read_identity
 from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.journal import Journal
+from metagraph.formats.project.paths import move_projects
 from metagraph.formats.project.versions import write_project
 from metagraph.formats.store import (
     SUFFIX,
     compute_content_digest,
     compute_file_digest,
     encode_project,
-    move_projects,
     read_with_digest,
 )
 from metagraph.graph.model import Project

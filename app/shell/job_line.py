@@ -1,6 +1,10 @@
-"""Show the running job in the status bar: what it does, its progress, and a way to stop it."""
+"""Show the running job in the status bar: what it does, how far it is, how long it will still take, and a way
+to stop it.
+"""
 
 from __future__ import annotations
+
+import time
 
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QToolButton, QWidget
@@ -10,6 +14,7 @@ from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 
 PAUSE = 40  # milliseconds between two updates of the bar
+EARLY = 2.0  # seconds of work before what is left is estimated
 
 
 class JobLine(QWidget):
@@ -31,6 +36,7 @@ class JobLine(QWidget):
         jobs.changed.connect(self._show)
         jobs.outlived.connect(self._tell_end)
         self._latest: tuple[int, int, str] | None = None  # reported, but not shown yet
+        self._total, self._first, self._began = 0, 0, 0.0  # of the part of the work that is estimated
         self._pause = QTimer(self, singleShot=True, interval=PAUSE)
         self._pause.timeout.connect(self._show_progress)
         self.hide()
@@ -40,7 +46,7 @@ class JobLine(QWidget):
         self.setVisible(job is not None)
         if job is not None:
             self.label.setText(job.title)
-            self._latest = None
+            self._latest, self._total = None, 0
             self.bar.setRange(0, 0)
             job.progress.connect(self._progress, Qt.ConnectionType.UniqueConnection)
 
@@ -59,8 +65,18 @@ class JobLine(QWidget):
         self._pause.start()
         self.bar.setRange(0, max(1, total))
         self.bar.setValue(done)
-        if self.jobs.running and words:
-            self.label.setText(f"{self.jobs.running[-1].title}: {words}")
+        told = ", ".join(filter(None, (words, self._estimate(done, total))))
+        if self.jobs.running and told:
+            self.label.setText(f"{self.jobs.running[-1].title}: {told}")
+
+    def _estimate(self, done: int, total: int) -> str:
+        """Return how long the work will still take, in words; nothing at first, and at its end."""
+        now = time.monotonic()
+        if total != self._total or done < self._first:  # other work, counted anew
+            self._total, self._first, self._began = total, done, now
+        if done <= self._first or done >= total or now - self._began < EARLY:
+            return ""
+        return describe_left((now - self._began) / (done - self._first) * (total - done))
 
     def _tell_end(self, title: str, error: Exception | None, stands: bool) -> None:
         """Report how a job ended whose dialog was closed."""
@@ -77,3 +93,10 @@ class JobLine(QWidget):
         if self.jobs.running:
             self.jobs.running[-1].cancel()
             self.told.emit(tr("Cancelled."))
+
+
+def describe_left(seconds: float) -> str:
+    """Return how long something will still take, rounded as an estimate is."""
+    if seconds < 90:
+        return tr("about {seconds:,} s left", seconds=max(1, round(seconds)))
+    return tr("about {minutes:,} min left", minutes=round(seconds / 60))

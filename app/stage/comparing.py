@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from app.stage.playback_source import ShownPlayback, play_in_context
-from metagraph.formats.store import load_returned
+from metagraph.formats.project.clip_loading import load_returned
 from metagraph.graph.editing.differences import Difference, list_differences
 from metagraph.graph.model import LAYERS, Project
 from metagraph.motion.clip import Clip

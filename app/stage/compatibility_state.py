@@ -275,7 +275,7 @@ class Compatibility(QObject):
         known = self._curves.get(action.id)
         if known is None or known[0] != action or known[1] is not self.judged.measured[action.layer]:
             self._wanted = action
-            self._look()
+            QTimer.singleShot(0, self._look)  # once the edit is painted
         return known[2] if known is not None and _alike(known[0], action) else None
 
     def _look(self) -> None:

@@ -22,8 +22,9 @@ class Fix:
 
     `words` are on the button. `action` is the one whose fields change, as in `edits.update_actions`. `does`
     is another edit, called with the project and `args`. `tip` says what will happen. `instead` is another
-    fix, offered in the menu of the problem's row. `alone`: the fix takes something away, so that it is not
-    one of those that are done together.
+    fix, offered in the menu of the problem's row. `alone`: the fix takes something away or writes files, so
+    that it is not one of those that are done together. `command`: instead of an edit, a command of the
+    window, for these `actions`.
     """
 
     words: str
@@ -34,6 +35,8 @@ class Fix:
     tip: str = field(default_factory=lambda: tr("One step that can be undone"))
     instead: Fix | None = None
     alone: bool = False
+    command: str = ""
+    actions: tuple[str, ...] = ()
 
     def __call__(self, project: Project) -> Project:
         """Return the project with the fix; unchanged if what it fixes was removed in the meantime."""

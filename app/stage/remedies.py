@@ -10,11 +10,12 @@ from typing import Any
 import msgspec
 
 from app.stage.fixes import Fix
-from app.translation import tr
+from app.translation import tr, tr_plural
 from metagraph.graph import edits
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import merging_stances, retiming
+from metagraph.graph.editing.one_sided import describe_one_sided, list_one_sided
 from metagraph.graph.model import Action, Project
 from metagraph.graph.problem import Problem
 from metagraph.graph.repeating import LONGEST_REPEAT, seconds_played
@@ -39,11 +40,26 @@ def fix_clips(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fi
             found = leave_out(action)
         elif problem.stance is not None and problem.code in ("no-gestures", "no-fidgets"):
             found = _merge(project, problem.stance)
+        elif problem.code == "one-arm":
+            found = _twins(project, problem)
         elif problem.stance is not None and problem.code == "play-never":
             found = _lead_to(project, problem.stance)
         if found is not None:
             out[problem] = found
     return out
+
+
+def _twins(project: Project, problem: Problem) -> Fix | None:
+    """Return the fix that mirrors what one arm alone has in a stance."""
+    actions = tuple(
+        action
+        for one in list_one_sided(project)
+        if one.stance == problem.stance and describe_one_sided(one) == problem.message
+        for action in one.actions
+    )
+    words = tr_plural("Make {count:,} twin", "Make {count:,} twins", len(actions))
+    tip = tr("Mirrors them for the other arm, as new clips and actions. You can undo this in one step.")
+    return Fix(words, tip=tip, alone=True, command="twins", actions=actions) if actions else None
 
 
 def leave_out(action: Action) -> Fix:

@@ -14,7 +14,8 @@ from app.project.jobs import WindowJob
 from app.translation import make_lazy_texts, tr
 from metagraph.common.network_paths import is_allowed
 from metagraph.common.programs import make_python_command, start
-from metagraph.formats.store import make_paths_absolute, save_project
+from metagraph.formats.project.paths import make_paths_absolute
+from metagraph.formats.store import save_project
 from metagraph.graph.model import Mode, Project
 
 SUFFIXES = make_lazy_texts(

@@ -18,6 +18,8 @@ class Halves(QWidget):
     def __init__(self, first: QWidget, second: QWidget, parent: QWidget) -> None:
         super().__init__(parent)
         self.beside = False
+        self._room = QSize()
+        self._first_is_low = False
         self._second = _Half(second, self)
         self._box = QBoxLayout(QBoxLayout.Direction.TopToBottom, self)
         self._box.setContentsMargins(14, 10, 14, 14)
@@ -27,7 +29,9 @@ class Halves(QWidget):
 
     def fit(self, room: QSize) -> None:
         """Stand as suits a room in which they are seen, which may be lower than they are."""
-        beside = room.width() >= WIDE and room.width() > RATIO * room.height()
+        self._room = room
+        wide = room.width() >= WIDE and room.width() > RATIO * room.height()
+        beside = wide and not self._first_is_low
         if beside == self.beside:
             return
         self.beside = beside
@@ -39,6 +43,12 @@ class Halves(QWidget):
         self._second.whole = not beside
         self._second.updateGeometry()
         self.turned.emit(beside)
+
+    def set_first_low(self, low: bool) -> None:
+        """Say whether the first is only a line or two: that stands above the second in any room."""
+        if low != self._first_is_low:
+            self._first_is_low = low
+            self.fit(self._room)
 
 
 class _Half(QScrollArea):

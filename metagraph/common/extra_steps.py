@@ -18,21 +18,24 @@ from metagraph.common.extras import (
     EXTRAS,
     add_extras,
     can_install,
+    describe_missing_extra,
     find_extras_folder,
     find_wants,
     holds_all,
     is_in_own_folder,
+    is_installed,
     make_install_command,
     make_remove_command,
     measure_extra,
 )
 from metagraph.common.pip_words import describe_pip_line, explain_pip_failure, find_download_size
 from metagraph.common.programs import ROOT, make_own, make_python_command, run_program, start
-from metagraph.common.wording import phrase
+from metagraph.common.wording import Phrase, phrase
 
 MINUTES = 30.0  # the longest that pip may take
 CHECK = 120.0  # seconds that an import may take; torch takes 20 from a cold disk
 Tell = Callable[[float, str], object]
+_ONE = threading.Lock()  # one thread installs, the others wait
 
 
 class ExtraError(RuntimeError):
@@ -101,6 +104,22 @@ def install_extra(
     except ExtraError:
         remove_extra(name)
         raise
+
+
+def bring_extra(name: str, what: Phrase) -> None:
+    """See that an extra is there, and install it first where Metagraph itself may: whoever asked for what
+    needs it asked for that. what: what needs it, in words. Raises ExtraError, and KeyError for a name that is
+    no extra's.
+    """
+    with _ONE:
+        if is_installed(name):
+            return
+        if not can_install(name):
+            raise ExtraError(describe_missing_extra(name, what))
+        extra = EXTRAS[name]
+        told = f"Installing {extra.module} ({extra.download} MB to load, once) ..."
+        print(told, file=sys.stderr, flush=True)
+        install_extra(name)
 
 
 def _install_apart(

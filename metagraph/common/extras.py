@@ -82,6 +82,17 @@ EXTRAS: Mapping[str, Extra] = {
         ("pylsl",),
         ("numpy",),
     ),
+    "studies": Extra(
+        "scipy",
+        ("scipy>=1.11",),
+        phrase("Statistics of studies (SciPy)"),
+        phrase("planning and reporting studies"),
+        35,
+        145,
+        "BSD-3-Clause",
+        ("scipy",),
+        ("numpy",),
+    ),
     # Packages from 0.10.30 on have neither `solutions` nor a model in them. What it asks for beside these
     # (OpenCV, JAX, Matplotlib, SentencePiece) is for drawing and for other models than the body's.
     "camera": Extra(

@@ -11,7 +11,7 @@ from metagraph.common.files import make_unforeseen_error
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.errors import FileError, describe_error
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
-from metagraph.formats.store import make_path_for_project, make_path_relative
+from metagraph.formats.project.paths import make_path_for_project, make_path_relative
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.edits import add_clips
 from metagraph.graph.face.curves import describe_unused_curves

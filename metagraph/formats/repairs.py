@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from metagraph.formats.clips import digest, read_clips
-from metagraph.formats.store import load_motions
+from metagraph.formats.project.clip_loading import load_motions
 from metagraph.formats.takes import NAME, ONE_FRAME
 from metagraph.graph.clip_source import get_source_clip, with_source
 from metagraph.graph.edit_error import EditError

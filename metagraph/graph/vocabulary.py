@@ -64,7 +64,6 @@ def join_tokens(texts: Iterable[str]) -> str:
     return out
 
 
-@lru_cache(maxsize=1 << 15)
 def _key(token: str) -> str:
     """Return a token's letters as phrases are made of them: no apostrophes, katakana as hiragana."""
     return token.replace("'", "").translate(_HIRAGANA)

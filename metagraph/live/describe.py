@@ -21,7 +21,6 @@ from metagraph.playback.plan import Plan
 class DescribedSession(Protocol):
     """What of a live session is reported. now: seconds since it began."""
 
-    project: Project
     ledger: Ledger
     clients: dict[int, Client]
     now: float
@@ -30,6 +29,9 @@ class DescribedSession(Protocol):
 
     @property
     def plan(self) -> Plan: ...
+
+    @property
+    def project(self) -> Project: ...
 
 
 MOST = {"lines": 2000, "points": 500, "actions": 20000}  # described at most

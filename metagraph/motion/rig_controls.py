@@ -4,8 +4,6 @@ from animation programs often hold them. Nobody sees where they are, so no measu
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 from metagraph.motion.joint_names import split_joint_name
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
@@ -15,7 +13,6 @@ _WORDS = frozenset(("ik", "fk", "pole", "poletarget", "target", "ctrl", "control
 )
 
 
-@lru_cache(maxsize=64)
 def find_rig_controls(skeleton: Skeleton) -> frozenset[int]:
     """Return the joints that are a rig's controls by their names. What the body hangs on is none, whatever it
     is called.

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -55,7 +54,6 @@ class PosedFigure:
     height: float
 
 
-@lru_cache(maxsize=64)
 def make_posed_figure(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> PosedFigure:
     """Return the figure of a skeleton whose roles are `named` (role, joint), in its rest pose."""
     roles = dict(named)

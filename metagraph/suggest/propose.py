@@ -351,9 +351,7 @@ def _unknown(there: Sequence[Shape], found: Sequence[Shape]) -> list[Shape]:
     return [
         shape
         for shape in found
-        if not any(
-            away <= known_.scale() for away, known_ in rank_stances(there, shape.names, shape.poses[0])
-        )
+        if not any(away <= known_.scale for away, known_ in rank_stances(there, shape.names, shape.poses[0]))
     ]
 
 

@@ -14,13 +14,13 @@ from PySide6.QtWidgets import QApplication, QPushButton, QWidget
 
 from app.widgets.lane_geometry import place_lanes
 from metagraph.formats.gltf.writer import write_glb
-from metagraph.formats.store import make_paths_absolute
+from metagraph.formats.project.paths import make_paths_absolute
 from metagraph.graph import edits, requests
 from metagraph.graph.model import Project
 from tests.app.pointer import press
 from tests.processes import ROOT
 
-pytestmark = [pytest.mark.window, pytest.mark.gl]
+pytestmark = [pytest.mark.window, pytest.mark.gl, pytest.mark.nightly]
 CONTROL = Qt.KeyboardModifier.ControlModifier
 SHIFT = Qt.KeyboardModifier.ShiftModifier
 

@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QDialog, QMenu
 from app.main import make_window
 from app.project.files import SAMPLE
 from app.project.jobs import Jobs
-from metagraph.formats import store
+from metagraph.formats.project import clip_loading
 from metagraph.graph import edits
 from tests.app.every_dialog import DIALOGS, opened
 from tests.app.handles import Handles
@@ -112,7 +112,7 @@ def test_a_menu_that_was_closed_is_gone(drive):
 @pytest.mark.nightly
 def test_a_window_that_was_closed_is_gone_with_its_project(qapp, qtbot, monkeypatch):
     # The other tests share the sample's clips, which would live on in what shares them.
-    monkeypatch.setattr(store._Loading, "_fitted", store._Loading._fitted.__wrapped__)
+    monkeypatch.setattr(clip_loading._Loading, "_fitted", clip_loading._Loading._fitted.__wrapped__)
 
     def sitting() -> list[ref[object]]:
         window = Handles(make_window())

@@ -105,6 +105,7 @@ def test_an_expert_goes_through_proposals_without_a_mistake(drive, sample, look,
     assert (reviewer.looked == 12) == look and (reviewer.watched > 0) == look
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("from_names", [True, False])
 def test_clips_are_labelled_field_by_field_in_the_table_as_was_counted(drive, sample, from_names):
     given = task(sample, 24)

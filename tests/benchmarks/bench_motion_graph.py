@@ -1,10 +1,13 @@
-"""How long motion graphs take to build and search: python tests/benchmarks/bench_motion_graph.py [scale
-[frames ...]]
+"""How long motion graphs take to build and search: python tests/benchmarks/bench_motion_graph.py [first |
+scale [frames ...]]
 
 Side by side with a straightforward NumPy reading of the paper on the same data, and with SciPy's components:
 25 joints, 50,568 frames at 30 Hz, smooth synthetic motion with rests, at thresholds that accept 11 % and 1 %
 of all pairs; then, where ../shared/data is, the real takes there. The straightforward one compares a few rows
 with all others, and its time is multiplied; its edges are compared one by one.
+
+With `first`: the first graph and the first exact search of 5 s of a new user, for whom nothing is compiled,
+and those of a later start; by the clock and in processor time.
 
 With `scale`: the cost against the number of frames, 10k to 1M, each in a process of its own so that its peak
 memory is its own, best of several for the small ones; without numbers behind it that is drawn as
@@ -19,6 +22,7 @@ import os
 import resource
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -267,6 +271,37 @@ def scale(sizes: list[int]) -> list[dict[str, Any]]:
     return rows
 
 
+def once() -> None:
+    """Print what a graph and a search take in this process."""
+    states = synthetic(3000)
+    keys = key_states(states)
+    limit = limit_for(states, keys, 0.05)
+    graph: Any = None
+
+    def build() -> None:
+        nonlocal graph
+        graph = build_graph(states, Threshold(3, 0.95, np.zeros(0), None, limit, limit), keys)
+
+    def search() -> None:
+        sound, segments = speech(len(graph.states))
+        find_best_path(graph, sound, list_wanted(segments, 5.0))
+
+    for what, work in (("graph", build), ("search", search)):
+        begun, busy = time.perf_counter(), time.process_time()
+        work()
+        wall, used = time.perf_counter() - begun, time.process_time() - busy
+        print(f"  first {what}: {wall:.1f} s, processor {used:.1f} s", flush=True)
+
+
+def first() -> None:
+    """Run `once` in a process for which nothing is compiled, then in another one."""
+    with tempfile.TemporaryDirectory() as folder:
+        for what in ("nothing compiled", "a later start"):
+            print(what, flush=True)
+            environ = {**os.environ, "NUMBA_CACHE_DIR": folder}
+            subprocess.run([sys.executable, __file__, "once"], env=environ, check=True)
+
+
 def drawn(rows: list[dict[str, Any]]) -> str:
     """Return seconds and memory against frames as an SVG; both axes are logarithmic."""
     left, right, top, bottom = 70.0, 470.0, 46.0, 330.0
@@ -324,6 +359,9 @@ def drawn(rows: list[dict[str, Any]]) -> str:
 
 
 def main() -> None:
+    if sys.argv[1:] in (["once"], ["first"]):
+        {"once": once, "first": first}[sys.argv[1]]()
+        return
     if sys.argv[1:2] == ["scale"]:
         given = [int(a) for a in sys.argv[2:]]
         rows = scale(given or list(SIZES))

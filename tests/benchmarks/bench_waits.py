@@ -1,8 +1,9 @@
 """What a user waits for, by the clock and in processor time: python tests/benchmarks/bench_waits.py [CLIPS]
 
-Each row is a whole process, as a user starts it, in the home of a new user. The window's rows come from
-bench_window.py and bench_library.py, which print below. CLIPS is how many clips are labelled and imported,
-500 unless said; with fewer than 100, videos are short too, and the window is left out.
+Each row is a whole process, as a user starts it, in the home of a new user; "first" is when the first result
+was there. The rows of the window, of motion graphs and of growth come from other scripts, which print below.
+CLIPS is how many clips are labelled and imported, 500 unless said; with fewer than 100, videos are short too,
+and the other scripts are left out.
 """
 
 from __future__ import annotations
@@ -23,15 +24,19 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 SAMPLE = ROOT / "sample_clips" / "sample.metagraph.yaml"
+MORE = (("bench_window.py",), ("bench_library.py",), ("bench_motion_graph.py", "first"), ("bench_growth.py",))
 
 
 @dataclass(frozen=True)
 class Wait:
-    """What took how long. wall, processor: seconds; processor is of the process and those it started."""
+    """What took how long. wall, processor, first: seconds; processor is of the process and those it started,
+    first until the first result, None if there is but one.
+    """
 
     name: str
     wall: float
     processor: float
+    first: float | None = None
 
 
 def make_clips(folder: Path, count: int) -> Path:
@@ -51,9 +56,10 @@ def make_clips(folder: Path, count: int) -> Path:
     return folder
 
 
-def measure(name: str, home: Path, *words: object, numba: bool = True) -> Wait:
-    """Run `metagraph` with words in a home of its own, and return what it took. numba: whether it may be
-    imported. Raises CalledProcessError if it fails; 3, which says that something needs a look, is no failure.
+def measure(name: str, home: Path, *words: object, first: str = "", numba: bool = True) -> Wait:
+    """Run `metagraph` with words in a home of its own, and return what it took. first: what the first result
+    has in its words. numba: whether it may be imported. Raises CalledProcessError if it fails; 3, which says
+    that something needs a look, is no failure.
     """
     environ = {**os.environ, "XDG_CACHE_HOME": str(home / "cache"), "XDG_DATA_HOME": str(home / "data")}
     if not numba:
@@ -64,14 +70,25 @@ def measure(name: str, home: Path, *words: object, numba: bool = True) -> Wait:
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     begin = time.perf_counter()
     command = [sys.executable, "-m", "app.cli", *map(str, words)]
-    done = subprocess.run(command, cwd=ROOT, env=environ, capture_output=True, text=True)
+    came = None
+    with (
+        tempfile.TemporaryFile("w+") as told,
+        subprocess.Popen(
+            command, cwd=ROOT, env=environ, stdout=subprocess.PIPE, stderr=told, text=True
+        ) as process,
+    ):
+        assert process.stdout is not None
+        for line in process.stdout:
+            if first and first in line and came is None:
+                came = time.perf_counter() - begin
+        if process.wait() not in (0, 3):
+            told.seek(0)
+            print(told.read()[-2000:], file=sys.stderr)
+            raise subprocess.CalledProcessError(process.returncode, command)
     wall = time.perf_counter() - begin
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    if done.returncode not in (0, 3):
-        print(done.stderr[-2000:], file=sys.stderr)
-        done.check_returncode()
     spent = (after.ru_utime + after.ru_stime) - (before.ru_utime + before.ru_stime)
-    return Wait(name, wall, spent)
+    return Wait(name, wall, spent, came)
 
 
 def measure_commands(folder: Path, count: int) -> Iterator[Wait]:
@@ -84,35 +101,39 @@ def measure_commands(folder: Path, count: int) -> Iterator[Wait]:
     yield measure("check the sample, the first time", home, "check", SAMPLE)
     yield measure("check the sample, later", home, "check", SAMPLE)
     yield measure(f"import {count} GLBs", home, "import", imported, clips)
-    yield measure(f"label {count} GLBs", home, "label", clips, "-o", labelled, "--no-pictures")
+    label = ("label", clips, "-o", labelled, "--no-pictures")
+    yield measure(f"label {count} GLBs, then play them", home, *label, first="labelled in")
     yield measure(f"check {count} clips", home, "check", labelled)
     yield measure(
         f"check {count} clips, played for {2 * seconds} s", home, "check", labelled, "--play", 2 * seconds
     )
-    yield measure(f"label {count} GLBs again", home, "label", clips, "-o", labelled, "--no-pictures")
+    yield measure(f"label {count} GLBs again", home, *label)
     yield measure("export the sample", home, "export", SAMPLE, "-o", folder / "export")
     video = ("--size", "1280x720", "--seconds", seconds)
     yield measure(f"video of {seconds} s, 1280x720", home, "render", SAMPLE, "-o", folder / "a.mp4", *video)
     one = ("reproduce", "--into", folder / "exhibits")
     if count >= 100:
-        yield measure("reproduce the papers' exhibits", home, *one)
+        yield measure("reproduce the papers' exhibits", home, *one, first="growth: ")
         yield measure("the same without numba", home, *one[:-1], folder / "plain", numba=False)
 
 
 def main() -> int:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 500
     print(f"load average {os.getloadavg()[0]:.1f}, {len(os.sched_getaffinity(0))} cores")
-    print("| wait | seconds | processor |\n|---|---|---|")
+    print("| wait | seconds | processor | first |\n|---|---|---|---|")
     folder = Path(tempfile.mkdtemp())
     try:
         for wait in measure_commands(folder, count):
-            print(f"| {wait.name} | {wait.wall:.1f} | {wait.processor:.1f} |", flush=True)
+            first = "" if wait.first is None else f"{wait.first:.1f}"
+            print(f"| {wait.name} | {wait.wall:.1f} | {wait.processor:.1f} | {first} |", flush=True)
     finally:
         shutil.rmtree(folder)
     if count >= 100:
-        for script in ("bench_window.py", "bench_library.py"):
-            print(f"\n{script}", flush=True)
-            subprocess.run([sys.executable, str(Path(__file__).with_name(script))], cwd=ROOT)
+        for words in MORE:
+            print(f"\n{' '.join(words)}", flush=True)
+            script = Path(__file__).with_name(words[0])
+            screen = ("xvfb-run", "-a") if words[0] == "bench_library.py" and shutil.which("xvfb-run") else ()
+            subprocess.run([*screen, sys.executable, str(script), *words[1:]], cwd=ROOT)
     return 0
 
 

@@ -98,6 +98,27 @@ def test_what_the_bundle_has_is_not_kept_twice(bundle, monkeypatch):
     assert [path.name for path in (extras.find_extras_folder() / "lab").iterdir()] == ["numba.py"]
 
 
+def test_what_is_needed_is_installed_once_and_said_on_the_other_stream(bundle, monkeypatch, capsys):
+    monkeypatch.setattr(extra_steps, "start", Pip())
+    there = []
+    monkeypatch.setattr(extra_steps, "is_installed", lambda name: name in there)
+    extra_steps.bring_extra("studies", "A report")
+    told = capsys.readouterr()
+    assert told.err.startswith("Installing scipy (35 MB") and not told.out
+    assert (extras.find_extras_folder() / "studies").is_dir()
+    there.append("studies")
+    extra_steps.bring_extra("studies", "A report")
+    assert not capsys.readouterr().err
+
+
+def test_what_is_needed_and_may_not_be_installed_is_told_with_the_command(monkeypatch, capsys):
+    monkeypatch.setattr(extra_steps, "is_installed", lambda name: False)
+    monkeypatch.setattr(extra_steps, "can_install", lambda name: False)
+    with pytest.raises(ExtraError, match=r"A report needs scipy.*35 MB to download.*pip install"):
+        extra_steps.bring_extra("studies", "A report")
+    assert not capsys.readouterr().err
+
+
 def test_what_fails_half_way_leaves_what_was_there(bundle, monkeypatch):
     monkeypatch.setattr(extra_steps, "start", Pip())
     extra_steps.install_extra("lab")

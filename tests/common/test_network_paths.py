@@ -20,15 +20,8 @@ from metagraph.common.network_paths import (
 )
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import read_gltf_clips
-from metagraph.formats.store import (
-    list_closed_paths,
-    make_paths_absolute,
-    move_project,
-    open_project,
-    read_project,
-    reopen_paths,
-    save_project,
-)
+from metagraph.formats.project.paths import list_closed_paths, make_paths_absolute, move_project, reopen_paths
+from metagraph.formats.store import open_project, read_project, save_project
 from metagraph.research.study.study_plan import parse_study_plan
 
 STUDY = Path(__file__).parents[2] / "sample_clips" / "study" / "study.yaml"

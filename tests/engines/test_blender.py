@@ -1,7 +1,4 @@
-"""The add-on for Blender: what needs no Blender here; the rest in Blender itself, where it is at hand.
-
-`METAGRAPH_BPY` names a Python that imports bpy (pip install bpy, in an environment of its own: 360 MB).
-"""
+"""The add-on for Blender: what needs no Blender here; the rest in Blender itself, where it is at hand."""
 
 from __future__ import annotations
 
@@ -12,7 +9,6 @@ import sys
 import threading
 import zipfile
 from collections.abc import Iterator
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +26,7 @@ from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
+from tests.engines.blender_python import find_blender
 
 HERE = Path(__file__).parent
 SAMPLE = HERE.parents[1] / "sample_clips" / "sample.metagraph.yaml"
@@ -237,20 +234,11 @@ def test_the_archive_is_what_blender_installs(sample: Project, tmp_path: Path) -
 # --- in Blender
 
 
-def blender() -> str:
-    named = os.environ.get("METAGRAPH_BPY")
-    if named:
-        return named
-    if find_spec("bpy") is None:
-        pytest.skip("needs Blender as a module: METAGRAPH_BPY=<a Python that imports bpy>")
-    return sys.executable
-
-
 @pytest.fixture(scope="module")
 def driven(exported: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
     """What `run/blender_drive.py` found, and its folder."""
     out, count = tmp_path_factory.mktemp("blender"), os.environ.get("METAGRAPH_BPY_ACTIONS", "12")
-    python = blender()
+    python = find_blender()
     live = subprocess.Popen(
         [sys.executable, "-m", "app.cli", "live", str(SAMPLE), "--json", "--port", "0", "--osc-port", "0", "--no-stdin"],
         stdout=subprocess.PIPE, text=True, cwd=HERE.parents[1],
@@ -285,6 +273,7 @@ def test_blender_shows_clips_and_labels_as_they_are(
         tracks[key] = tracks.get(key, 0) + 1
     assert noted["tracks"] == tracks
     assert noted["sets"] == 1  # all key the same bones: none stays as the action before left it
+    rates = {clip["name"]: clip["fps"] for clip in document["clips"]}
     poses, degrees, metres = np.load(folder / "poses.npz"), 0.0, 0.0
     for ident, (frame, heads) in noted["heads"].items():
         action = sample.action(ident)
@@ -292,10 +281,12 @@ def test_blender_shows_clips_and_labels_as_they_are(
         clip = sample.clips[action.clip].motion
         assert clip is not None
         read, places = poses[f"{ident} rotations"], poses[f"{ident} translations"]
-        assert len(read) == clip.frames
-        degrees = max(degrees, apart(read, clip.rotations))
-        metres = max(metres, float(np.abs(places - clip.poses().translations).max()))
-        _, positions = clip.skeleton.globals(clip.pose_at(frame / clip.fps))
+        rate = rates[told[ident]["clip"]]
+        between = round(rate / clip.fps)  # the export's frames for one of the clip
+        assert len(read) == (clip.frames - 1) * between + 1
+        degrees = max(degrees, apart(read[::between], clip.rotations))
+        metres = max(metres, float(np.abs(places[::between] - clip.poses().translations).max()))
+        _, positions = clip.skeleton.globals(clip.pose_at(frame / rate))
         up = positions[:, [0, 2, 1]] * [1, -1, 1]
         metres = max(metres, float(np.abs(np.array(heads) - up).max()))
     print(f"{len(noted['heads'])} actions: {degrees:.4f} degrees, {metres * 1000:.4f} mm")

@@ -14,10 +14,11 @@ import pytest
 from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.gltf.reader import write_glb
 from metagraph.formats.imports import bring_over, find_strangers, import_files
+from metagraph.formats.project.clip_loading import relocate
 from metagraph.formats.project.data import from_data, to_data
 from metagraph.formats.project.journal import find_changes
 from metagraph.formats.project.replay import apply_change
-from metagraph.formats.store import open_project, relocate, save_project
+from metagraph.formats.store import open_project, save_project
 from metagraph.graph.check import check_project
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.model import Project

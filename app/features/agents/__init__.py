@@ -13,6 +13,7 @@ from app.shell.actions import Command
 from app.shell.command_table import Feature, bind_commands
 from app.shell.context import Contribution, HeaderItem, Shell
 from app.translation import tr, tr_error, tr_noop, tr_plural
+from app.typed_command import list_program_words, quote_command
 
 if TYPE_CHECKING:
     from app.authoring.agent_door import AgentDoor
@@ -44,7 +45,7 @@ class AgentsFeature(Feature):
             self._show()
             self.document.failed.emit(tr("Agents cannot edit: {error}", error=tr_error(error)))
             return
-        self.shell.tell(tr("Agents may edit this project: metagraph author {name}", name=self._name()))
+        self.shell.tell(tr("Agents may edit this project: {command}", command=self._command()))
 
     def close(self) -> None:
         """Let no program edit any more."""
@@ -60,8 +61,10 @@ class AgentsFeature(Feature):
         self.button.refresh()
         return room
 
-    def _name(self) -> str:
-        return self.document.path.name if self.document.path is not None else ""
+    def _command(self) -> str:
+        """Return what a program is started by that works on the open project."""
+        name = self.document.path.name if self.document.path is not None else ""
+        return quote_command([*list_program_words(), "author", name])
 
     def _make_door(self) -> AgentDoor:
         from app.authoring.agent_door import AgentDoor

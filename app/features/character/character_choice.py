@@ -23,7 +23,7 @@ def choose_character(shell: Shell) -> None:
     if not name:
         return
     from metagraph.formats.characters import CharacterFile, look_at
-    from metagraph.formats.store import make_path_relative
+    from metagraph.formats.project.paths import make_path_relative
 
     folder = document.folder
     path = make_path_relative(Path(name), folder) if folder is not None else Path(name).as_posix()

@@ -13,7 +13,8 @@ from PySide6.QtWidgets import QMenu, QWidget
 from app.project.document import Document
 from app.project.speech_files import SOUNDS, count_channels
 from app.translation import make_lazy_texts, tr, tr_error
-from metagraph.formats.store import SUFFIX, make_path_relative
+from metagraph.formats.project.paths import make_path_relative
+from metagraph.formats.store import SUFFIX
 from metagraph.graph.conversation.edits import change_side
 from metagraph.graph.conversation.model import Conversation, get_side_name
 from metagraph.graph.edit_error import EditError

@@ -24,7 +24,8 @@ from app.translation import tr, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.common.studio import find_start_folder
-from metagraph.formats.store import SUFFIX, make_path_relative
+from metagraph.formats.project.paths import make_path_relative
+from metagraph.formats.store import SUFFIX
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project

@@ -16,7 +16,7 @@ from app.translation import tr
 from metagraph.common.budgets import LIST_FILE
 from metagraph.common.files import is_file, is_inside, make_unforeseen_error, read_file
 from metagraph.errors import FileError
-from metagraph.formats.store import make_path_for_project
+from metagraph.formats.project.paths import make_path_for_project
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.edits import find_free_name
 from metagraph.graph.model import Project

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,8 +18,6 @@ from metagraph.mimicry.keypoint_layouts import KeypointTrack
 
 if TYPE_CHECKING:
     from app.shell.context import Shell
-
-EARLY = 2.0  # seconds of work before what is left is estimated
 
 
 def read_video(shell: Shell, file: Path, show: Callable[[KeypointTrack], None]) -> None:
@@ -81,16 +78,7 @@ def _when_installed(shell: Shell, begin: Callable[[], None]) -> None:
 
 def _start(shell: Shell, file: Path, show: Callable[[KeypointTrack], None]) -> None:
     def work(job: WindowJob) -> KeypointTrack:
-        began = time.monotonic()
-
-        def tell(done: int, total: int) -> None:
-            spent = time.monotonic() - began
-            left = spent / max(done, 1) * (total - done)
-            job.tell(
-                done, total, tr("about {seconds:,} s left", seconds=round(left)) if spent > EARLY else ""
-            )
-
-        return film_video(file, tell, lambda: job.cancelled).track
+        return film_video(file, job.tell, lambda: job.cancelled).track
 
     def failed(error: Exception) -> None:
         QMessageBox.warning(shell.widget, tr("Not read"), tr_error(error))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtWidgets import QToolButton, QWidget
 
@@ -9,6 +11,7 @@ from app.look import icons
 from app.look.theme import get_theme
 from app.shell.context import Contribution, HeaderItem, Panel, Shell
 from app.stage.compatibility_state import Compatibility
+from app.stage.fixes import Fix
 from app.stage.problem_watch import ProblemWatch
 from app.translation import tr, tr_plural
 from app.widgets.restyling import set_sheet
@@ -17,11 +20,18 @@ from app.widgets.restyling import set_sheet
 def contribute(shell: Shell) -> Contribution:
     watch, compatibility = shell.services[ProblemWatch], shell.services[Compatibility]
 
+    def mend(fixes: Sequence[Fix]) -> None:
+        compatibility.mend(fix for fix in fixes if not fix.command)
+        for fix in fixes:
+            if fix.command:
+                shell.stage.session.selection.select_actions(fix.actions)
+                shell.actions[fix.command].trigger()
+
     def make() -> QWidget:
         from app.features.problems.problems_panel import ProblemsPanel
 
         panel = ProblemsPanel(shell.stage.session, shell.widget)
-        panel.mend_wanted.connect(compatibility.mend)
+        panel.mend_wanted.connect(mend)
         panel.show_problems(watch.problems, watch.fixes)
         watch.changed.connect(lambda: panel.show_problems(watch.problems, watch.fixes))
         panel.play_wanted.connect(watch.play)

@@ -180,6 +180,7 @@ class ActionPage(Halves):
         self.kind.setText(f"{title} · {get_vocabulary_title(layer) if layer is not Mixed else tr('layers')}")
         set_sheet(self.kind, f"color: {t.kinds[kind]}" if kind is not Mixed else "")
         self.plot.setVisible(one)
+        self.set_first_low(not one)
         self.plot.set_curves(not self.low)
         self.timing.setVisible(one and self.low and not self.timing_elsewhere())
         if one:

@@ -167,6 +167,7 @@ class PropertiesPanel(QScrollArea):
         self._turn_to(1 if actions else 2 if clips else 0)
         if actions:
             self.action.show_actions(actions)
+            self._bound()
         elif clips:
             self.clip.show_clips(clips)
         else:

@@ -124,7 +124,7 @@ class ActionRows(QWidget):
         self.prominence.show_value(find_common_value([100 * share for share in shares]))
         variety = project.settings.variety
         gestures = {
-            layer: sum(a.kind == "gesture" for a in project.graphs[layer].actions.values())
+            layer: sum(len(of) for (_, kind), of in project.graphs[layer].index.items() if kind == "gesture")
             for layer in {a.layer for a in actions}
         }
         soonest = variety * min(

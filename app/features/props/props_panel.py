@@ -31,8 +31,8 @@ from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_noop
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.errors import FileError
+from metagraph.formats.project.paths import make_path_for_project
 from metagraph.formats.props.reader import ENDINGS
-from metagraph.formats.store import make_path_for_project
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.props import add_prop, find_grip, remove_prop, set_prop
 from metagraph.graph.model import Project

@@ -91,6 +91,10 @@ class TableModel(QAbstractTableModel):
         parts = re.split(r"(\d+)", translate_cell(column, text).casefold())
         return (text == "", *((int(p) if n % 2 else p) for n, p in enumerate(parts)))
 
+    def is_refused(self, index: Index) -> bool:
+        """Return whether a cell could not be written."""
+        return (self.rows[index.row()].ident, COLUMNS[index.column()]) in self.refused
+
     def show_refused(self, refused: Mapping[Cell, str]) -> None:
         """Mark the cells that could not be written."""
         self.refused = refused
@@ -147,7 +151,7 @@ class TableModel(QAbstractTableModel):
             return Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
         if role == Role.ForegroundRole:
             return self._ink(row, column)
-        if role == Role.BackgroundRole and (row.ident, column) in self.refused:
+        if role == Role.BackgroundRole and self.is_refused(index):
             fill = QColor(self.look.error)
             fill.setAlpha(60)
             return QBrush(fill)

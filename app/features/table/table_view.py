@@ -13,7 +13,7 @@ from PySide6.QtCore import (
     Qt,
     Signal,
 )
-from PySide6.QtGui import QKeyEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QCompleter,
@@ -75,6 +75,15 @@ class CellEditor(QStyledItemDelegate):
     def __init__(self, view: TableView) -> None:
         super().__init__(view)
         self.view = view
+
+    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
+        """Put a frame around what was refused: the selection hides the ground of a cell."""
+        super().paint(painter, option, index)
+        if self.view.rows.is_refused(index):
+            painter.save()
+            painter.setPen(QPen(QColor(self.view.rows.look.error), 2))
+            painter.drawRect(option.rect.adjusted(1, 1, -1, -1))
+            painter.restore()
 
     def createEditor(self, parent: QWidget, option: QStyleOptionViewItem, index: Index) -> QWidget:
         line = QLineEdit(parent)

@@ -14,9 +14,10 @@ from metagraph.common.file_names import make_file_stem
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.imports import Loaded
-from metagraph.formats.store import make_path_relative
+from metagraph.formats.project.paths import make_path_relative
 from metagraph.formats.takes import REPAIRS
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing.fitting_twins import fit_twins
 from metagraph.graph.editing.mirroring import TwinClip, make_twin_clips, mirror_clips, place_twins
 from metagraph.graph.edits import add_clips
 from metagraph.graph.model import Project
@@ -43,7 +44,7 @@ def make_twins(shell: Shell) -> None:
         return
 
     def work(job: WindowJob) -> list[tuple[TwinClip, Loaded]]:
-        made = make_twin_clips(project, actions) if actions else mirror_clips(project, clips)
+        made = make_twin_clips(project, actions, skip=True) if actions else mirror_clips(project, clips)
         out = []
         for n, twin in enumerate(made):
             job.tell(n, len(made), twin.name)
@@ -109,8 +110,8 @@ def write_twin(twin: TwinClip, folder: Path) -> Loaded:
 
 
 def with_twins(project: Project, made: list[tuple[TwinClip, Loaded]]) -> Project:
-    """Return the project with mirrored clips added and the twins of their actions placed. Raises
-    EditError.
+    """Return the project with mirrored clips added, and the twins of their actions placed and fitted to
+    their stances. Raises EditError.
     """
     project = add_clips(project, [loaded for _, loaded in made])
     idents = {(e.path, e.take): e.id for e in project.clips.values()}
@@ -119,4 +120,8 @@ def with_twins(project: Project, made: list[tuple[TwinClip, Loaded]]) -> Project
         project, clips={i: replace(e, as_is=REPAIRS) if i in new else e for i, e in project.clips.items()}
     )
     pairs = {action: idents[loaded[0], loaded[1]] for twin, loaded in made for action in twin.actions}
-    return place_twins(project, pairs) if pairs else project
+    if not pairs:
+        return project
+    known = {action.id for action in project.actions()}
+    placed = place_twins(project, pairs)
+    return fit_twins(placed, [action.id for action in placed.actions() if action.id not in known])

@@ -230,11 +230,12 @@ class WelcomePage(QWidget):
 
     def follow(self) -> None:
         """Be there while there is nothing else, and room for it."""
-        document, room = self.document, self._room()
-        project = document.project
-        empty = not project.clips and document.path is None and not document.undo_stack.count()
-        shown = empty and room is not None and not self.closed and self.session.onstage.mode == "meta"
-        if room is not None and shown:
+        document = self.document
+        empty = not document.project.clips and document.path is None and not document.undo_stack.count()
+        fits = empty and not self.closed and self.session.onstage.mode == "meta"
+        room = self._room() if fits else None
+        shown = room is not None
+        if room is not None:
             if self.parent() is not room:
                 self.setParent(room)
             self.setGeometry(room.rect())

@@ -22,7 +22,7 @@ from metagraph.formats.conversations.words import (
     match_sides,
     tell_unheard,
 )
-from metagraph.formats.store import make_path_for_project
+from metagraph.formats.project.paths import make_path_for_project
 from metagraph.formats.transcripts.reader import read_transcript
 from metagraph.formats.transcripts.source import TranscriptSound
 from metagraph.formats.transcripts.words import count

@@ -11,9 +11,11 @@ import msgspec
 
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
+from metagraph.formats.project.clip_loading import load_motions
 from metagraph.formats.project.data import FORMAT, from_data, to_data
 from metagraph.formats.project.fields import DataError
-from metagraph.formats.store import load_motions, make_paths_absolute, move_project, open_project
+from metagraph.formats.project.paths import make_paths_absolute, move_project
+from metagraph.formats.store import open_project
 from metagraph.graph.editing.taking import Taking, take, take_piece
 from metagraph.graph.model import Project
 

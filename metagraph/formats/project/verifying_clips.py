@@ -14,6 +14,8 @@ from metagraph.errors import clean_text
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.fbx.processes import batch
 from metagraph.formats.gltf.reader import read_character
+from metagraph.formats.project.moved_files import find_clip_place, find_moved_files, list_missing_clips
+from metagraph.formats.project.paths import make_path_relative
 from metagraph.formats.project.verified import (
     VerificationFault,
     VerifiedPart,
@@ -21,13 +23,7 @@ from metagraph.formats.project.verified import (
     describe_whole,
     make_fault,
 )
-from metagraph.formats.store import (
-    find_clip_place,
-    find_moved_files,
-    list_missing_clips,
-    make_path_relative,
-    read_project,
-)
+from metagraph.formats.store import read_project
 from metagraph.graph.clip_source import with_source
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.motion.clip import Clip

@@ -7,7 +7,7 @@ library.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from metagraph.common.wording import phrase
@@ -15,7 +15,7 @@ from metagraph.errors import describe_error
 from metagraph.graph import anatomy, ids
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import find_free_name
-from metagraph.graph.model import Action, Limb, Project
+from metagraph.graph.model import Action, ClipEntry, Limb, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import measure_pose_distance
 from metagraph.motion.mirror import find_joint_twins, mirror, swap_sides
@@ -33,9 +33,9 @@ class TwinClip:
     actions: tuple[str, ...]
 
 
-def make_twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip]:
+def make_twin_clips(project: Project, actions: Collection[str], skip: bool = False) -> list[TwinClip]:
     """Return the mirrored clips that twins of these actions need, one for each clip, with names no other clip
-    has.
+    has. skip: leave out what cannot be mirrored, unless that is all.
 
     Raises EditError, in words, when an action has no side to mirror, or when the skeleton is not the same on
     both sides.
@@ -46,9 +46,8 @@ def make_twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip
     for ident in dict.fromkeys(actions):
         action = _action(project, ident)
         groups.setdefault(action.clip, []).append(action)
-    return _mirrored(
-        project, {clip: (used[0].name, tuple(a.id for a in used)) for clip, used in groups.items()}
-    )
+    wanted = {clip: (used[0].name, tuple(a.id for a in used)) for clip, used in groups.items()}
+    return _mirrored(project, wanted, skip)
 
 
 def mirror_clips(project: Project, clips: Collection[str]) -> list[TwinClip]:
@@ -61,35 +60,50 @@ def mirror_clips(project: Project, clips: Collection[str]) -> list[TwinClip]:
     return _mirrored(project, {i: (name, ()) for i, name in names.items()})
 
 
-def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]]) -> list[TwinClip]:
+def _mirrored(
+    project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]], skip: bool = False
+) -> list[TwinClip]:
     """wanted: clip -> what it is for, in words, and the actions its mirror image is for."""
     skeleton = project.skeleton
     pairs = find_joint_twins(skeleton, anatomy.project_roles(project)) if skeleton is not None else ()
     taken = {entry.name for entry in project.clips.values()}
-    out = []
+    out: list[TwinClip] = []
+    skipped: list[EditError] = []
     for clip, (called, actions) in wanted.items():
         entry = project.clips.get(clip)
-        if entry is None or entry.motion is None:
-            raise EditError(
-                phrase("'{called}' cannot be mirrored: its clip's file is missing", called=called)
-            )
         try:
-            twin = mirror(entry.motion, pairs)
-        except ValueError as error:
-            raise EditError(describe_error(error)) from None
-        distance = float(measure_pose_distance(twin.skeleton, entry.motion.poses(), twin.poses()).max())
-        if distance < SAME and not _faces_differ(entry.motion, twin):
-            raise EditError(
-                phrase(
-                    "'{called}' does not need a mirrored twin: it is within {far:.1f} cm of its mirror image",
-                    called=called,
-                    far=100 * distance,
-                )
-            )
+            twin = _mirror_sided(entry, called, pairs)
+        except EditError as error:
+            if not skip:
+                raise
+            skipped.append(error)
+            continue
+        assert entry is not None
         name = find_free_name(name_twin(entry.name), taken)
         taken.add(name)
         out.append(TwinClip(name, twin.renamed(name), actions))
+    if skipped and not out:
+        raise skipped[0]
     return out
+
+
+def _mirror_sided(entry: ClipEntry | None, called: str, pairs: Sequence[int]) -> Clip:
+    if entry is None or entry.motion is None:
+        raise EditError(phrase("'{called}' cannot be mirrored: its clip's file is missing", called=called))
+    try:
+        twin = mirror(entry.motion, pairs)
+    except ValueError as error:
+        raise EditError(describe_error(error)) from None
+    distance = float(measure_pose_distance(twin.skeleton, entry.motion.poses(), twin.poses()).max())
+    if distance < SAME and not _faces_differ(entry.motion, twin):
+        raise EditError(
+            phrase(
+                "'{called}' does not need a mirrored twin: it is within {far:.1f} cm of its mirror image",
+                called=called,
+                far=100 * distance,
+            )
+        )
+    return twin
 
 
 def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:

@@ -1,11 +1,13 @@
-"""Stances in which only one arm has gestures or fidgets: a model that asks for the other is not met."""
+"""Stances in which only one arm has gestures or fidgets: a request for the other is not met."""
 
 from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
 
+from metagraph.common.wording import Phrase, phrase, plural_phrase
 from metagraph.graph.model import Limb, Project
+from metagraph.graph.problem import Problem
 
 SIDES: tuple[Limb, ...] = ("left", "right")
 
@@ -41,8 +43,27 @@ def list_one_sided(project: Project) -> list[OneSided]:
     return out
 
 
-def describe_one_sided(one: OneSided) -> str:
+def describe_one_sided(one: OneSided) -> Phrase:
     """Return a sentence on what a stance lacks, and how many twins would add it."""
-    count, has = len(one.actions), "right" if one.lacks == "left" else "left"
-    actions = "1 action" if count == 1 else f"{count} actions"
-    return f"'{one.name}' has {actions} of the {has} arm and none of the {one.lacks}"
+    if one.lacks == "left":
+        return plural_phrase(
+            "'{name}' has {count:,} action of the right arm and none of the left",
+            "'{name}' has {count:,} actions of the right arm and none of the left",
+            len(one.actions),
+            name=one.name,
+        )
+    return plural_phrase(
+        "'{name}' has {count:,} action of the left arm and none of the right",
+        "'{name}' has {count:,} actions of the left arm and none of the right",
+        len(one.actions),
+        name=one.name,
+    )
+
+
+def check_limbs(project: Project) -> list[Problem]:
+    """Return a hint for each stance of the arms in which only one arm has gestures or fidgets."""
+    remedy = phrase("Make mirrored twins: then what asks for the other arm is met.")
+    return [
+        Problem("hint", "one-arm", describe_one_sided(one), remedy, "arms", one.stance)
+        for one in list_one_sided(project)
+    ]

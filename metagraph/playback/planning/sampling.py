@@ -492,7 +492,7 @@ class Performer:
         directed = meta.written and self.project.settings.variety > 0
         if directed:  # the model's limb and tags are wishes, not orders
             every = self._fresh(meta, every, now)
-            fresh = [a.id for a in every]
+            fresh = {a.id for a in every}
             found = [a for a in found if a.id in fresh]
             exact = [a for a in exact if a.id in fresh]
             if len(every) == 0:
@@ -713,15 +713,17 @@ class Performer:
 
     def _count_fresh(self, stance: str | None, now: float) -> int:
         """Return how many gestures of a stance have not played for long enough."""
-        count = 0
         if stance is None:
-            return count
+            return 0
         variety = self.project.settings.variety
-        for action in self.graph.of(stance, "gesture"):
+        count = len(self.graph.of(stance, "gesture"))
+        for ident, end in self.ended.items():
+            action = self.graph.actions.get(ident)
+            if action is None or action.kind != "gesture" or action.stance != stance:
+                continue
             shows = self._shows(action)
-            needed = repeat_interval("gesture", shows, self.beats) * variety
-            if action.id not in self.ended or now >= self.ended[action.id] + needed:
-                count += 1
+            if now < end + repeat_interval("gesture", shows, self.beats) * variety:
+                count -= 1
         return count
 
     def _moved(self) -> float:

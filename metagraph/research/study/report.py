@@ -46,6 +46,7 @@ from metagraph.research.study.reports.figure_files import make_standalone_svg
 from metagraph.research.study.reports.plots import format_duration
 from metagraph.research.study.reports.style import METHODS, STYLE
 from metagraph.research.study.reports.tables import study_tables
+from metagraph.research.study.statistics.distributions import describe_software
 from metagraph.research.study.statistics.small_samples import Estimate
 
 __all__ = [
@@ -147,7 +148,7 @@ def format_study_page(results: Results, papers: Files | None = None) -> str:
         _ratings(results, drawn),
         _together(results),
         describe_missing_data(results, drawn.get("participants", "")),
-        f"<h2>How it was reckoned</h2>{METHODS}",
+        f"<h2>How it was reckoned</h2>{METHODS}<p>{describe_software()}</p>",
     ]
     head = (
         "<meta charset='utf-8'><meta name='viewport' content='width=device-width'><link rel='icon' "

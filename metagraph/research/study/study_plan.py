@@ -39,6 +39,7 @@ CONDITION_TITLES: Mapping[str, str] = {
     "unreal": "Unreal Engine",  # done there, and imported
     "unity": "Unity",
     "godot": "Godot",
+    "blender": "Blender",
 }
 
 

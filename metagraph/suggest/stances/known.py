@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -75,6 +76,7 @@ class Shape:
     calm: float = 0.0
     spread: Array = field(default_factory=lambda: np.zeros(0))
 
+    @cached_property
     def scale(self) -> float:
         """Return how far an end that belongs to it usually is, heights: see `rank_likely_stances`."""
         widest = float(self.spread.max(initial=0.0))
@@ -136,23 +138,34 @@ def measure_distance_from_stance(shape: Shape, names: tuple[str, ...], pose: Arr
     share none.
     """
     if names == shape.names:
-        mine, theirs = pose, shape.poses
-    else:
-        shared = [n for n in names if n in shape.names]
-        if not shared:
-            return float("inf")
-        mine, theirs = (
-            pose[[names.index(n) for n in shared]],
-            shape.poses[:, [shape.names.index(n) for n in shared]],
-        )
-        names = tuple(shared)
-    return float((np.linalg.norm(theirs - mine, axis=-1) * _weights(names)).max(-1).min())
+        return _measure_nearest([shape.poses], names, pose)[0]
+    shared = tuple(n for n in names if n in shape.names)
+    if not shared:
+        return float("inf")
+    theirs = shape.poses[:, [shape.names.index(n) for n in shared]]
+    return _measure_nearest([theirs], shared, pose[[names.index(n) for n in shared]])[0]
 
 
 def rank_stances(shapes: Sequence[Shape], names: tuple[str, ...], pose: Array) -> list[tuple[float, Shape]]:
     """Return the stances with how far a pose is from them, heights, the nearest first."""
-    found = [(measure_distance_from_stance(shape, names, pose), shape) for shape in shapes]
+    alike = [shape.poses for shape in shapes if shape.names == names]
+    each = iter(_measure_nearest(alike, names, pose))
+    found = [
+        (next(each) if shape.names == names else measure_distance_from_stance(shape, names, pose), shape)
+        for shape in shapes
+    ]
     return sorted((x for x in found if x[0] < float("inf")), key=lambda x: x[0])
+
+
+def _measure_nearest(groups: Sequence[Array], names: tuple[str, ...], pose: Array) -> list[float]:
+    """Return how far a pose `[n, 3]` is from the nearest of each group of poses `[k, n, 3]`, of its farthest
+    point.
+    """
+    if not groups:
+        return []
+    starts = np.cumsum([0, *(len(poses) for poses in groups[:-1])])
+    away = (np.linalg.norm(np.concatenate(groups) - pose, axis=-1) * _weights(names)).max(-1)
+    return [float(least) for least in np.minimum.reduceat(away, starts)]
 
 
 def rank_likely_stances(
@@ -165,7 +178,7 @@ def rank_likely_stances(
     meet, and some lie far off.
     """
     weights = [
-        ((1 + (away / shape.scale()) ** 2 / 3) ** -2, shape)
+        ((1 + (away / shape.scale) ** 2 / 3) ** -2, shape)
         for away, shape in rank_stances(shapes, names, pose)
     ]
     whole = sum(w for w, _ in weights) + STRAY

@@ -156,7 +156,6 @@ def _told(
     return out
 
 
-@lru_cache(maxsize=65536)
 def _resembles(word: str, tongue: WordLanguage) -> int:
     """Return how many letters of a word tell a language by its stem or its parts, 0 for none."""
     stem = tongue.stem(word)

@@ -4,8 +4,10 @@ posture.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import takewhile
 
 from metagraph.common.wording import phrase
 from metagraph.suggest.words.cut import as_written
@@ -246,7 +248,9 @@ class Stances:
 
     def _goes_on(self, words: Words) -> bool:
         """Whether other names say after these words what is done: then these say where."""
-        rests = [w[len(words) :] for w in self._distinct if w[: len(words)] == words and len(w) > len(words)]
+        count = len(words)
+        after = self._distinct[bisect_right(self._distinct, words) :]  # they are sorted
+        rests = [name[count:] for name in takewhile(lambda name: name[:count] == words, after)]
         doing = [r for r in rests if self._acts(r) or r[0] in self._joins]
         return len(doing) > 1 and 2 * len(doing) >= len(rests)
 

@@ -8,7 +8,6 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 from metagraph.suggest.words.cut import EnglishWord, Token, as_written, cut_tokens
 from metagraph.suggest.words.defaults import Meanings
@@ -140,7 +139,6 @@ def _junk_at(words: Sequence[str], junk: Meanings, *, front: bool) -> int:
     return 0
 
 
-@lru_cache(maxsize=8192)
 def _known(word: str, vocabulary: frozenset[str]) -> tuple[str, ...]:
     """Return a word as the vocabulary has it: "shrugging" as "shrug", "crossarms" as two; as it is where it
     is not known.

@@ -264,7 +264,8 @@ def make_unlabelled(folder: Path, count: int) -> Path:
 
 
 @pytest.mark.gl
-@pytest.mark.parametrize("count", [12, pytest.param(76, marks=pytest.mark.nightly)])
+@pytest.mark.nightly
+@pytest.mark.parametrize("count", [12, 76])
 def test_a_script_takes_a_folder_without_labels_to_a_checked_export(tmp_path: Path, count: int) -> None:
     folder = make_unlabelled(tmp_path / "clips", count)
     out = run_script(folder, tmp_path / "new.metagraph.yaml")
@@ -275,6 +276,7 @@ def test_a_script_takes_a_folder_without_labels_to_a_checked_export(tmp_path: Pa
 
 
 @pytest.mark.gl
+@pytest.mark.nightly
 def test_so_it_does_with_76_clips_made_by_others(tmp_path: Path) -> None:
     if not DATA.is_dir():
         pytest.skip("needs ../shared/data/kaykit-rogue beside the project")

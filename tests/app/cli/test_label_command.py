@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from app.cli.parser import main
-from metagraph.formats.store import open_project
+from metagraph.formats.store import SUFFIX, open_project, read_project
 from metagraph.graph.check import check_project
+from metagraph.graph.problem import Problem
 
 ROOT = Path(__file__).resolve().parents[3]
 CLIPS = ROOT / "sample_clips" / "clips"
@@ -280,3 +281,18 @@ def test_labelling_again_leaves_the_earlier_report(folder: Path, capsys: pytest.
     assert main(command) == 0
     data = json.loads(capsys.readouterr().out)
     assert data["labelled"] == 0 and data["report"] is None and report.read_bytes() == before
+
+
+def test_who_does_not_wait_until_it_was_played_keeps_everything(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stop(*_: object) -> list[Problem]:
+        assert "clips labelled in" in capsys.readouterr().out
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("metagraph.playback.rehearsal.rehearse", stop)
+    assert main(["label", str(folder), "--no-pictures"]) == 1
+    assert "stopped" in capsys.readouterr().err
+    project = folder.with_name(f"{folder.name}{SUFFIX}")
+    assert any(True for _ in read_project(project).actions())
+    assert "<h2>" in folder.with_name(f"{folder.name}.labels.html").read_text(encoding="utf-8")

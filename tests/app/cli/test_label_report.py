@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from app.cli.label_report import format_label_report, open_command
+from app.cli.label_report import format_label_report, list_open_commands
 from app.cli.parser import main
 from metagraph.formats.store import read_project
 from metagraph.graph import edits
@@ -98,7 +98,8 @@ def test_a_command_survives_any_name(tmp_path: Path) -> None:
     project = edits.add_clips(Project(), [(f"{n}.glb", 0, "", clip(name)) for n, name in enumerate(names)])
     entries = list(project.clips.values())
     project = edits.rename_clip(project, entries[3].id, "twin")
-    asked = [shlex.split(open_command(project, e.id, tmp_path / "a b.yaml"))[-1] for e in entries]
+    commands = list_open_commands(project, project.clips, tmp_path / "a b.yaml")
+    asked = [shlex.split(commands[e.id])[-1] for e in entries]
     assert asked[0] == entries[0].name
     assert asked[1:] == [e.id for e in entries[1:]]
 

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from app.cli.parser import main
+from app.cli.progress_line import describe_seconds
+from app.cli.reproduce_command import _estimate
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.research.exhibits.exhibit import NAMES
+from metagraph.research.exhibits.exhibit import NAMES, MadeExhibit, choose_exhibits
 from tests.synthesis.talking import speech, talking
 from tests.wavs import wav
 
@@ -100,3 +102,25 @@ def test_an_exhibit_that_fails_in_a_way_nobody_foresaw_spoils_no_other(
     assert main(["reproduce", "matrix", "ratings", "--into", str(tmp_path / "out")]) == 3
     told = capsys.readouterr().out
     assert "failed (KeyError: 'odd')" in told and "without responses" in told
+
+
+def test_each_exhibit_is_there_as_soon_as_it_is_made(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stop(_: object) -> None:
+        assert "without responses" in capsys.readouterr().out
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("metagraph.research.exhibits.generated.exhibit_sizes", stop)
+    assert main(["reproduce", "ratings", "sizes", "--into", str(tmp_path / "out")]) == 1
+    data = json.loads((tmp_path / "out" / "report.json").read_bytes())
+    assert [e["exhibit"] for e in data["exhibits"]] == ["ratings"]
+    assert "<svg" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+def test_what_is_left_follows_what_was_needed_so_far() -> None:
+    exhibits = choose_exhibits(["ratings", "matrix", "sizes"])
+    usual = [exhibit.seconds[0] for exhibit in exhibits]
+    made = [(exhibits[0], MadeExhibit(""), 40 * usual[0])]
+    assert _estimate(exhibits, [], False).startswith("1 of 3, about ")
+    assert _estimate(exhibits, made, False) == f"2 of 3, about {describe_seconds(40 * sum(usual[1:]))} left"

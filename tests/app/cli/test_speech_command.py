@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from app.cli.parser import main
-from metagraph.formats.store import make_paths_absolute, open_project, save_project
+from metagraph.formats.project.paths import make_paths_absolute
+from metagraph.formats.store import open_project, save_project
 from metagraph.formats.transcripts.reader import read_transcript
 from tests.speech import group, talk
 

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication, QMessageBox
 
 from metagraph.common import network_paths
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.store import list_closed_paths
+from metagraph.formats.project.paths import list_closed_paths
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 

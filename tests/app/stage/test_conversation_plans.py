@@ -16,7 +16,8 @@ from PySide6.QtTest import QTest
 
 from app.cli.parser import main
 from app.stage.conversation_plans import ConversationPlans, keep_conversation
-from metagraph.formats.store import make_paths_absolute, open_project, save_project
+from metagraph.formats.project.paths import make_paths_absolute
+from metagraph.formats.store import open_project, save_project
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.graph.model import Project

@@ -97,7 +97,11 @@ def test_the_pages_words_plan_what_is_asked_once(shipped: dict[str, Vectors], na
 
 
 @pytest.mark.parametrize(
-    ("name", "least"), [*zip(ALIVE, (90, 93, 10, 5, 12, 5, 5, 5, 5, 320, 306), strict=True)]
+    ("name", "least"),
+    [
+        pytest.param(name, least, marks=pytest.mark.nightly if least > 300 else ())
+        for name, least in zip(ALIVE, (90, 93, 10, 5, 12, 5, 5, 5, 5, 320, 306), strict=True)
+    ],
 )
 def test_the_pages_words_draw_the_events_of_life(name: str, least: int) -> None:
     character, vectors = read_vectors(SHIPPED / name)

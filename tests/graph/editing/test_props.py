@@ -9,14 +9,8 @@ import numpy as np
 import pytest
 
 from metagraph.formats.project.merging import merge_projects
-from metagraph.formats.store import (
-    list_project_files,
-    make_paths_absolute,
-    move_project,
-    open_project,
-    read_project,
-    save_project,
-)
+from metagraph.formats.project.paths import list_project_files, make_paths_absolute, move_project
+from metagraph.formats.store import open_project, read_project, save_project
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.differences import describe_differences
 from metagraph.graph.editing.props import MOST, add_prop, find_grip, remove_prop, set_prop

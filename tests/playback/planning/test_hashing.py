@@ -1,44 +1,24 @@
-"""Words that come often are taken into a hash at once, to the same bits."""
+"""Hashes of words are those that FNV-1a and MurmurHash3 publish."""
 
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from metagraph.playback.planning import hashing
-from metagraph.playback.planning.hashing import absorb
+from metagraph.playback.planning.hashing import OFFSET, PRIME, absorb, begun, mix
 
 
-def byte_by_byte(value: int, word: str) -> int:
-    for byte in (*word.encode(), 0):
-        value = ((value ^ byte) * hashing.PRIME) % 2**32
-    return value
+@pytest.mark.parametrize(
+    ("word", "published"), [("", 0x811C9DC5), ("a", 0xE40C292C), ("foobar", 0xBF9CF968)], ids=repr
+)
+def test_a_word_is_hashed_as_fnv_1a_does_and_closed_by_a_zero_byte(word: str, published: int) -> None:
+    assert absorb(OFFSET, word) == published * PRIME % 2**32
 
 
-@given(st.lists(st.tuples(st.integers(0, 2**32 - 1), st.text(max_size=12)), max_size=20), st.integers(1, 3))
-def test_a_word_gives_the_same_however_often_it_comes(
-    drawn: list[tuple[int, str]], times_of_often: int
-) -> None:
-    for _ in range(times_of_often * hashing.OFTEN):
-        for value, word in drawn:
-            assert absorb(value, word) == byte_by_byte(value, word)
+def test_letters_of_any_writing_count_by_their_bytes() -> None:
+    assert absorb(7, "ü") == absorb(7, b"\xc3\xbc".decode())
+    assert absorb(7, "ü") != absorb(7, "u")
 
 
-def test_every_last_byte_of_a_word_that_comes_often_is_right() -> None:
-    for _ in range(hashing.OFTEN + 1):
-        absorb(7, "gap")
-    for value in (*range(256), 0x12345600, 0xFFFFFFFF, 2**32 - 256):
-        assert absorb(value, "gap") == byte_by_byte(value, "gap")
-
-
-def test_no_more_is_remembered_than_it_says(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(hashing, "_known", {})
-    monkeypatch.setattr(hashing, "_times", {})
-    monkeypatch.setattr(hashing, "MOST", 3)
-    monkeypatch.setattr(hashing, "COUNTED", 8)
-    for n in range(100):
-        for _ in range(hashing.OFTEN + 1):
-            assert absorb(n, str(n)) == byte_by_byte(n, str(n))
-        assert len(hashing._times) <= 8
-    assert list(hashing._known) == ["0", "1", "2"]
+def test_bits_are_mixed_as_murmurhash3_ends() -> None:
+    assert [mix(n) for n in (0, 1, 2**32 - 1)] == [0, 0x514E28B7, 0x81F16F39]
+    assert begun(1) == OFFSET ^ 0x514E28B7

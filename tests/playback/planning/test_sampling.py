@@ -5,8 +5,9 @@ transitions.
 from __future__ import annotations
 
 import itertools
+import sys
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import pytest
@@ -18,6 +19,7 @@ from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning import sampling as pick_module
 from metagraph.playback.planning.mood import Moods
+from metagraph.playback.planning.running_plan import improvise
 
 
 @pytest.fixture
@@ -422,3 +424,35 @@ def test_what_would_wait_too_long_behind_an_action_is_dropped(project: Project, 
     project = edits.set_settings(project, wait=1.0)
     plan, whole = arms(project, ask("a", 1.0, action=toy.id(project, "rest long")), ask("once", 1.4))
     assert len(plan.cues) == 1 and outcomes(whole)["once"] in ("covered", "late")
+
+
+# --- many actions
+
+
+def crowd(project: Project, times: int) -> Project:
+    """Return a project each of whose nodes has its clips so many times more."""
+    for layer, graph in project.graphs.items():
+        for (stance, kind), bucket in graph.index.items():
+            clips = [action.clip for action in bucket] * times
+            project = edits.place_clips(project, clips, layer, kind, stance, bucket[0].end_stance)
+    return project
+
+
+def count_calls(work: Callable[[], object]) -> int:
+    calls = 0
+
+    def note(frame: object, event: str, of: object) -> None:
+        nonlocal calls
+        calls += event == "call"
+
+    sys.setprofile(note)
+    try:
+        work()
+    finally:
+        sys.setprofile(None)
+    return calls
+
+
+def test_a_minute_of_ten_times_the_actions_takes_at_most_ten_times_the_work(project):
+    few, many = crowd(project, 20), crowd(project, 200)
+    assert count_calls(lambda: improvise(many, 60)) < 11 * count_calls(lambda: improvise(few, 60))

@@ -895,9 +895,9 @@ inline std::optional<List<Ref<SamplingStep>>> Performer::_steps(const Ref<MetaAc
     bool directed = meta->written && this->project->settings->variety > 0;
     if (directed) { // the model's limb and tags are wishes, not orders
         every = this->_fresh(meta, every, now);
-        List<std::string> fresh;
+        Set<std::string> fresh;
         for (const auto& a : every) {
-            fresh.push_back(a->id);
+            fresh.insert(a->id);
         }
         List<Ref<Action>> found6;
         for (const auto& a : found) {
@@ -1245,16 +1245,19 @@ inline List<Ref<Action>> Performer::_moves_on(const Ref<MetaAction>& meta, doubl
 }
 
 inline int Performer::_count_fresh(const std::optional<std::string>& stance, double now) {
-    int count = 0;
     if (!stance.has_value()) {
-        return count;
+        return 0;
     }
     double variety = this->project->settings->variety;
-    for (const auto& action : this->graph->of(*stance, "gesture")) {
+    int count = lang::len(this->graph->of(*stance, "gesture"));
+    for (const auto& [ident, end] : this->ended) {
+        Ref<Action> action = lang::get(this->graph->actions, ident);
+        if (action == nullptr || action->kind != "gesture" || action->stance != *stance) {
+            continue;
+        }
         double shows = this->_shows(action);
-        double needed = director::repeat_interval("gesture", shows, this->beats) * variety;
-        if (!lang::contains(this->ended, action->id) || now >= this->ended.at(action->id) + needed) {
-            count += 1;
+        if (now < end + director::repeat_interval("gesture", shows, this->beats) * variety) {
+            count -= 1;
         }
     }
     return count;

@@ -592,9 +592,9 @@ export class Performer {
     const directed = meta.written && this.project.settings.variety > 0;
     if (directed) { // the model's limb and tags are wishes, not orders
       every = this.fresh(meta, every, now);
-      const fresh = every.map((a) => a.id);
-      found = found.filter((a) => fresh.includes(a.id));
-      exact = exact.filter((a) => fresh.includes(a.id));
+      const fresh = new Set(every.map((a) => a.id));
+      found = found.filter((a) => fresh.has(a.id));
+      exact = exact.filter((a) => fresh.has(a.id));
       if (every.length === 0) {
         const moves = this.movesOn(meta, now);
         return moves.length > 0 ? [new SamplingStep(moves)] : null;
@@ -869,16 +869,19 @@ export class Performer {
 
   /** Return how many gestures of a stance have not played for long enough. */
   countFresh(stance, now) {
-    let count = 0;
     if (stance === null) {
-      return count;
+      return 0;
     }
     const variety = this.project.settings.variety;
-    for (const action of this.graph.of(stance, "gesture")) {
+    let count = this.graph.of(stance, "gesture").length;
+    for (const { 0: ident, 1: end } of this.ended) {
+      const action = this.graph.actions.get(ident) ?? null;
+      if (action === null || action.kind !== "gesture" || action.stance !== stance) {
+        continue;
+      }
       const shows = this.shows(action);
-      const needed = repeatInterval("gesture", shows, this.beats) * variety;
-      if (!this.ended.has(action.id) || now >= this.ended.get(action.id) + needed) {
-        count += 1;
+      if (now < end + repeatInterval("gesture", shows, this.beats) * variety) {
+        count -= 1;
       }
     }
     return count;

@@ -47,6 +47,7 @@ TITLES: Mapping[str, str] = {
     "unreal": "Unreal Engine",
     "unity": "Unity",
     "godot": "Godot",
+    "blender": "Blender",
 }
 
 

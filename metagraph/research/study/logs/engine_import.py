@@ -16,7 +16,7 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.research.study.logs.log import StudyLog, read_log
 from metagraph.research.study.study_plan import Study
 
-ENGINES = ("unreal", "unity", "godot")
+ENGINES = ("unreal", "unity", "godot", "blender")
 REMEDY = "Take the file that the script for the engine told of, whole."
 
 
@@ -34,7 +34,7 @@ def import_engine(study: Study, participant: str, path: Path) -> tuple[StudyLog,
     begin = next((e for e in log.events if e["type"] == "begin"), {})
     engine = begin.get("engine")
     if engine not in ENGINES:
-        raise FileError(path, "is no log of Unreal, Unity or Godot", "its begin", REMEDY)
+        raise FileError(path, "is no log of Unreal, Unity, Godot or Blender", "its begin", REMEDY)
     if begin.get("participant") != participant:
         raise FileError(
             path, f"is of '{begin.get('participant')}', not of '{participant}'", "its begin", REMEDY

@@ -16,7 +16,8 @@ spent <- get("spent"); answers <- get("questionnaires"); estimates <- get("estim
 meta <- grep("^meta_seconds", names(people), value = TRUE)[1]
 manual <- grep("^manual_seconds", names(people), value = TRUE)[1]
 both <- people[!is.na(people$ratio), ]
-colours <- c(meta = "#127065", manual = "#a35c00", unreal = "#1a63b8", unity = "#6a45c4", godot = "#b3372f")
+colours <- c(meta = "#127065", manual = "#a35c00", unreal = "#1a63b8", unity = "#6a45c4", godot = "#b3372f",
+             blender = "#8a1c5c")
 
 # participants
 paper("participants", 6, 4)

@@ -8,13 +8,13 @@ two shares in the same way.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import ceil, comb, exp, lgamma, log
+from math import ceil, exp
 from statistics import NormalDist
 
 import numpy as np
 
+from metagraph.research.study.statistics.distributions import load_scipy
 from metagraph.research.study.statistics.small_samples import LEVEL, Estimate
-from metagraph.research.study.statistics.student_t import compute_incomplete_beta
 
 MOST = 100_000  # answers beyond which no study is planned
 STEADY = 100  # more answers with which the power must hold, since it goes up and down like a saw
@@ -23,11 +23,9 @@ CLOSE = 1 + 1e-7  # what counts as just as likely
 
 def compute_probability_at_most(k: int, n: int, share: float) -> float:
     """Return how likely k of n, or fewer, are where each is with probability `share`, 0..1."""
-    if k < 0:
-        return 0.0
-    if k >= n:
-        return 1.0
-    return compute_incomplete_beta(n - k, k + 1, 1 - share)
+    if k < 0 or k >= n:
+        return 0.0 if k < 0 else 1.0
+    return float(load_scipy("special").bdtr(k, n, share))
 
 
 def compute_two_sided_p(k: int, n: int, share: float = 0.5) -> float | None:
@@ -35,9 +33,7 @@ def compute_two_sided_p(k: int, n: int, share: float = 0.5) -> float | None:
     _checked(k, n)
     if not n:
         return None
-    logs = _logs(n, share)
-    edge = logs[k] + log(CLOSE)
-    return float(min(1.0, np.exp(logs[logs <= edge]).sum()))
+    return float(load_scipy("stats").binomtest(k, n, share).pvalue)
 
 
 def estimate_exact_share(k: int, n: int, level: float = LEVEL) -> Estimate:
@@ -46,8 +42,9 @@ def estimate_exact_share(k: int, n: int, level: float = LEVEL) -> Estimate:
     if not n:
         raise ValueError("nothing has no share")
     tail = (1 - level) / 2
-    low = 0.0 if k == 0 else _solve(lambda p: 1 - compute_probability_at_most(k - 1, n, p) >= tail)
-    high = 1.0 if k == n else _solve(lambda p: compute_probability_at_most(k, n, p) <= tail)
+    edge = load_scipy("special").betaincinv
+    low = 0.0 if k == 0 else float(edge(k, n - k + 1, tail))
+    high = 1.0 if k == n else float(edge(k + 1, n - k, 1 - tail))
     return Estimate(k / n, low, high, n)
 
 
@@ -57,18 +54,14 @@ def compute_fisher_p(a: int, n: int, b: int, m: int) -> float | None:
     _checked(b, m)
     if not n or not m:
         return None
-    both = a + b
-    ways = {x: comb(n, x) * comb(m, both - x) for x in range(max(0, both - m), min(n, both) + 1)}
-    total, here = sum(ways.values()), ways[a]
-    return min(1.0, sum(w for w in ways.values() if w <= here) / total)
+    return float(load_scipy("stats").fisher_exact([[a, n - a], [b, m - b]]).pvalue)
 
 
 def share_power(n: int, share: float, alpha: float = 0.05) -> float:
     """Return how likely n answers show a share to be other than a half."""
     if n < 1:
         return 0.0
-    half = np.exp(_logs(n, 0.5))
-    below = np.cumsum(half)
+    below = load_scipy("special").bdtr(np.arange(n + 1), n, 0.5)
     out = np.flatnonzero(2 * below * CLOSE**-1 <= alpha)  # a half is symmetric: twice the lower tail
     if not len(out):
         return 0.0
@@ -135,22 +128,6 @@ def _from(about: int, enough: Callable[[int], bool], steady: int = STEADY) -> in
             break
     # Teeth of the saw may lie below: the first number whose followers all hold is the answer.
     return n
-
-
-def _logs(n: int, share: float) -> np.ndarray:
-    """Return the logs of the probabilities of 0..n of n."""
-    k = np.arange(n + 1)
-    ways = np.array([lgamma(x + 1) for x in range(n + 1)])
-    return np.asarray(ways[n] - ways - ways[::-1] + k * log(share) + (n - k) * log(1 - share))
-
-
-def _solve(reached: Callable[[float], bool]) -> float:
-    """Return the share from which on something holds; by bisection."""
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (low, middle) if reached(middle) else (middle, high)
-    return (low + high) / 2
 
 
 def _checked(k: int, n: int) -> None:

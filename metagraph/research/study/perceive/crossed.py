@@ -16,8 +16,8 @@ from math import inf, isfinite, lgamma, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.research.study.statistics.distributions import compute_t_quantile, compute_t_two_sided
 from metagraph.research.study.statistics.small_samples import LEVEL, Estimate
-from metagraph.research.study.statistics.student_t import compute_t_quantile, compute_t_two_sided
 
 Array = NDArray[np.float64]
 NOTHING = 0.02  # a deviation of log odds below which a group is reported as having none

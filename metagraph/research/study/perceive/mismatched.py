@@ -12,6 +12,8 @@ from copy import deepcopy
 
 import yaml
 
+from metagraph.research.study.perceive.perceive_plan import PerceivePlan
+
 OWN, OTHER = "own", "other"  # ends of the names of a system's two conditions
 QUESTION = "In which of the two does the sound belong to the motion?"
 LEAST = 2  # stretches, as the sound of another one is needed
@@ -28,6 +30,17 @@ def list_stretches(length: float, seconds: float, most: int) -> list[tuple[float
         )
     room = (length - count * seconds) / count
     return [(round(n * (seconds + room) + room / 2, 3), seconds) for n in range(count)]
+
+
+def list_mismatched_systems(plan: PerceivePlan) -> dict[str, tuple[str, str]]:
+    """Return system -> its pair of conditions, of which the second has another's sound; none in a plan that
+    asks something else.
+    """
+    return {
+        pair[0].removesuffix(f"-{OWN}"): pair
+        for pair in plan.pairs
+        if plan.conditions[pair[0]].sound != "mismatched" and plan.conditions[pair[1]].sound == "mismatched"
+    }
 
 
 def make_mismatched_plan(

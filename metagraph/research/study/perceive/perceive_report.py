@@ -22,6 +22,7 @@ from metagraph.research.study.reports.figure_files import make_standalone_svg
 from metagraph.research.study.reports.style import STYLE
 from metagraph.research.study.reports.tables import Table
 from metagraph.research.study.reports.tables import format_rows as csv_of
+from metagraph.research.study.statistics.distributions import describe_software
 from metagraph.research.study.statistics.small_samples import Estimate
 
 NAME = "report.html"
@@ -40,6 +41,9 @@ there is a model.</dd>
 mixed model with deviations of people and items that cross (restricted maximum likelihood); without one, by
 people's means.</dd>
 <dt>Tests</dt><dd>One for each pair, of choices and of each question; Holm's correction over all of them.</dd>
+<dt>Systems beside each other</dt><dd>If the study asks which sound belongs to a motion: of each two
+systems, the difference of the log odds of choosing the own sound, by the mixed model with people and items
+of each system by themselves; Holm's correction over these differences.</dd>
 <dt>Order</dt><dd>Shares in the first and in the second half of each person's session, compared by Fisher's
 exact test. Sides: all choices of the left one against a half.</dd>
 <dt>Who counts</dt><dd>Who came to the end and missed no more checks than the plan allows. What would come of
@@ -70,6 +74,14 @@ def summarise_perceive(results: PerceiveResults) -> list[str]:
         out.append(
             f"{r.question}: {a} was rated {abs(r.difference.value):.2f} points {higher} than {b} ({tail})"
             + ("." if sure else "; these answers do not show that it is so in general.")
+        )
+    for s in results.systems:
+        a, b = s.systems if s.better != s.systems[1] else s.systems[::-1]
+        tail = f"{_plain(s.together)} together"
+        out.append(
+            f"{a}'s motion goes with its sound more visibly than {b}'s ({tail})."
+            if s.better
+            else f"{a} and {b}: these answers do not show whose motion goes better with its sound ({tail})."
         )
     return out or ["Nobody has answered yet."]
 
@@ -118,11 +130,12 @@ def format_perceive_page(results: PerceiveResults) -> str:
         + "</div>",
         _list(results.cautions, "card warn"),
         _choices(results, drawn),
+        _systems(results),
         _ratings(results, drawn),
         _sides(results),
         _people(results, drawn),
         _claims(results),
-        f"<h2>How it was reckoned</h2>{METHODS}",
+        f"<h2>How it was reckoned</h2>{METHODS}<p>{describe_software()}</p>",
     ]
     head = (
         "<meta charset='utf-8'><meta name='viewport' content='width=device-width'>"
@@ -203,6 +216,24 @@ def _choices(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
     )
     out += format_cells(("mixed model", "log odds", "deviations", "gain of the left side"), models)
     return out + "<h3>By item</h3>" + "".join(items)
+
+
+def _systems(results: PerceiveResults) -> str:
+    if not results.systems:
+        return ""
+    rows = [
+        [
+            escape(f"{s.systems[0]} less {s.systems[1]}"),
+            format_interval(s.difference, format_two_digits),
+            format_p_value(s.p),
+            format_p_value(s.together),
+            escape(s.better or "not shown"),
+        ]
+        for s in results.systems
+    ]
+    words = "<p>How much better the own sound is recognised with one system's motion than with another's.</p>"
+    columns = ("systems", "difference, log odds", "alone", "together", "goes better with its sound")
+    return f"<h2>Systems beside each other</h2>{words}{format_cells(columns, rows)}"
 
 
 def _ratings(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
@@ -350,6 +381,10 @@ def perceive_tables(results: PerceiveResults) -> dict[str, Table]:
         "participants.csv": (
             ("participant", "standing", "answers", "told", "missed", "replays", "seconds", "why"),
             people,
+        ),
+        "systems.csv": (
+            ("first", "second", "difference", "low", "high", "p", "p_holm", "better"),
+            [(*s.systems, *_three(s.difference), s.p, s.together, s.better or "") for s in results.systems],
         ),
         "rated.csv": (("question", *both, "difference", "low", "high", "p", "p_holm", "by"), rated),
     }

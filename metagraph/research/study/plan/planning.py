@@ -17,8 +17,13 @@ from typing import Literal
 import numpy as np
 
 from metagraph.research.study.statistics import small_samples as stats
+from metagraph.research.study.statistics.distributions import (
+    compute_chi_squared_cdf,
+    compute_chi_squared_quantile,
+    compute_t_cdf,
+    compute_t_quantile,
+)
 from metagraph.research.study.statistics.small_samples import MOST_PEOPLE, Estimate, Test
-from metagraph.research.study.statistics.student_t import compute_t_cdf, compute_t_quantile
 
 Verdict = Literal["larger", "equivalent", "smaller", "not told"]
 
@@ -207,44 +212,3 @@ def judge_equivalence(logs: Sequence[float], smallest: float, alpha: float = 0.0
     elif found.high < -bound:
         verdict = "smaller"
     return Equivalence(smallest, found.exp(), Test("two one-sided t", t, n - 1, p, n), verdict)
-
-
-# --- chi squared
-
-
-def compute_chi_squared_cdf(x: float, df: float) -> float:
-    """Return the share of the chi-squared distribution up to x: the lower incomplete gamma function, by its
-    series or its continued fraction (DLMF 8.11.4, 8.9.2).
-    """
-    a, z = df / 2, x / 2
-    if z <= 0:
-        return 0.0
-    front = exp(a * log(z) - z - lgamma(a))
-    if z < a + 1:
-        term = total = 1 / a
-        n = a
-        while term > 1e-17 * total:
-            n += 1
-            term *= z / n
-            total += term
-        return min(1.0, front * total)
-    b, c, d = z + 1 - a, 1e300, 1 / (z + 1 - a)
-    h = d
-    for k in range(1, 100_000):
-        step = -k * (k - a)
-        b += 2
-        d = 1 / (step * d + b)
-        c = b + step / c
-        h *= d * c
-        if abs(d * c - 1) < 1e-16:
-            break
-    return max(0.0, 1 - front * h)
-
-
-def compute_chi_squared_quantile(share: float, df: float) -> float:
-    """Return the value a share of the chi-squared distribution does not exceed; by bisection."""
-    low, high = 0.0, df + 10 * sqrt(2 * df) + 20
-    for _ in range(200):
-        middle = (low + high) / 2
-        low, high = (middle, high) if compute_chi_squared_cdf(middle, df) < share else (low, middle)
-    return (low + high) / 2

@@ -9,8 +9,10 @@ from pathlib import Path
 
 from metagraph.errors import FileError
 from metagraph.formats.imports import import_files
+from metagraph.formats.project.clip_loading import Opened, load_motions
+from metagraph.formats.project.paths import make_path_relative
 from metagraph.formats.recovery import find_left_journals, recover, retire
-from metagraph.formats.store import Opened, load_motions, make_path_relative, read_project, save_project
+from metagraph.formats.store import read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.research.study.plan.hidden_names import hide_names

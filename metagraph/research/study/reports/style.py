@@ -7,8 +7,9 @@ from collections.abc import Mapping
 # On light ground, as on paper; then on dark.
 CONDITION_COLOURS: Mapping[str, str] = {
     "meta": "#127065", "manual": "#a35c00", "unreal": "#1a63b8", "unity": "#6a45c4", "godot": "#b3372f",
+    "blender": "#8a1c5c",
 }  # fmt: skip
-_DARK_CONDITIONS = ("#3fb8a6", "#f0a63c", "#5aa3f0", "#a98bf0", "#e57373")
+_DARK_CONDITIONS = ("#3fb8a6", "#f0a63c", "#5aa3f0", "#a98bf0", "#e57373", "#e08ab8")
 _PARTS = (
     "#1a63b8",
     "#127065",

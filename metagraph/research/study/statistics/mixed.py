@@ -7,15 +7,15 @@ Thompson 1971), or by maximum likelihood; degrees of freedom of each effect by S
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import log, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.research.study.statistics.distributions import compute_t_quantile, load_scipy
 from metagraph.research.study.statistics.small_samples import LEVEL, Estimate
-from metagraph.research.study.statistics.student_t import compute_t_quantile
 
 Array = NDArray[np.float64]
 EXACTLY = 1e-12  # of all variance, what is left below which rows fit exactly, and nothing can be estimated
@@ -191,8 +191,12 @@ class _Model:
         if not self.k:
             return np.zeros(0)
         starts = [np.full(self.k, s) for s in (0.1, 1.0, 5.0)]
-        found = min((_simplex(lambda r: self.profiled(np.abs(r)), s) for s in starts), key=lambda f: f[1])
-        ratios = np.abs(found[0])
+        minimize, closely = load_scipy("optimize").minimize, {"xatol": 1e-8, "fatol": 1e-12}
+        tries = [
+            minimize(lambda r: self.profiled(np.abs(r)), s, method="Nelder-Mead", options=closely)
+            for s in starts
+        ]
+        ratios: Array = np.abs(min(tries, key=lambda found: float(found.fun)).x)
         least = self.profiled(ratios)
         for k in range(self.k):  # nothing is likelier than next to nothing
             without = ratios.copy()
@@ -248,36 +252,3 @@ def _apart(n: int, codes: Sequence[NDArray[np.intp]]) -> list[NDArray[np.intp]]:
         if (label == before).all():
             break
     return [np.flatnonzero(label == k) for k in np.unique(label)]
-
-
-def _simplex(f: Callable[[Array], float], start: Array) -> tuple[Array, float]:
-    """Return where a function is lowest, and its value (Nelder and Mead 1965)."""
-    size = len(start)
-    points = [start, *(start + np.eye(size)[k] * max(0.5 * float(start[k]), 0.05) for k in range(size))]
-    values = [f(p) for p in points]
-    for _ in range(400 * size):
-        order = np.argsort(values, kind="stable")
-        points, values = [points[k] for k in order], [values[k] for k in order]
-        if abs(values[-1] - values[0]) < 1e-12 * (1 + abs(values[0])) and all(
-            float(np.abs(p - points[0]).max()) < 1e-8 for p in points
-        ):
-            break
-        middle = np.mean(points[:-1], 0)
-        tried = 2 * middle - points[-1]
-        one = f(tried)
-        if one < values[0]:
-            far = middle - 2 * (points[-1] - middle)
-            two = f(far)
-            points[-1], values[-1] = (far, two) if two < one else (tried, one)
-        elif one < values[-2]:
-            points[-1], values[-1] = tried, one
-        else:
-            near = middle + (-0.5 if one < values[-1] else 0.5) * (points[-1] - middle)
-            two = f(near)
-            if two < min(one, values[-1]):
-                points[-1], values[-1] = near, two
-            else:
-                points = [points[0], *((p + points[0]) / 2 for p in points[1:])]
-                values = [values[0], *(f(p) for p in points[1:])]
-    k = int(np.argmin(values))
-    return points[k], values[k]

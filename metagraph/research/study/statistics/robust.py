@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import lru_cache
-from math import erfc, exp, floor, inf, log, log1p, pi, sqrt
+from math import exp, floor, inf, log, log1p, pi, sqrt
 from statistics import NormalDist, median
 
 import numpy as np
 
+from metagraph.research.study.statistics.distributions import compute_t_quantile, load_scipy
 from metagraph.research.study.statistics.small_samples import LEVEL, Estimate, mean
-from metagraph.research.study.statistics.student_t import compute_t_quantile
 
 EXACT = 25  # values up to which every way to give ranks signs is counted
 MAD = 1.4826  # what makes the median deviation from the median a standard deviation, of normal values
@@ -93,11 +93,13 @@ def estimate_censored_mean(
     tails = [(v, 1.0, n) for v, n in Counter(lows.tolist()).items()]
     tails += [(v, -1.0, n) for v, n in Counter(highs.tolist()).items()]
 
+    log_tail = load_scipy("special").log_ndtr
+
     def lost(mu: float, scale: float) -> float:
         """Return minus twice the log likelihood."""
         out = (around + known * (middle - mu) ** 2) / scale**2 + known * (2 * log(scale) + log(2 * pi))
         for bound, sign, times in tails:
-            out -= 2 * times * _log_tail(sign * (bound - mu) / scale)
+            out -= 2 * times * log_tail(-sign * (bound - mu) / scale)
         return out
 
     spread = float(x.std(ddof=1))
@@ -117,32 +119,12 @@ def estimate_censored_mean(
     return Estimate(mu, _crossing(best, mu, -reach, edge), _crossing(best, mu, reach, edge), n)
 
 
-def _log_tail(z: float) -> float:
-    """Return the log of the normal share above z."""
-    if z < 25:
-        return log(erfc(z / sqrt(2)) / 2)
-    return -z * z / 2 - log(z * sqrt(2 * pi))
-
-
-GOLDEN = (sqrt(5) - 1) / 2
-
-
 def _lowest(f: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
-    """Return where a function of one hollow is lowest, and its value there; by the golden section."""
-    a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    fa, fb = f(a), f(b)
-    for _ in range(120):
-        if fa < fb:
-            high, b, fb = b, a, fa
-            a = high - GOLDEN * (high - low)
-            fa = f(a)
-        else:
-            low, a, fa = a, b, fb
-            b = low + GOLDEN * (high - low)
-            fb = f(b)
-        if high - low < 1e-9 * max(1.0, abs(low)):
-            break
-    return (a, fa) if fa < fb else (b, fb)
+    """Return where a function of one hollow is lowest, and its value there."""
+    found = load_scipy("optimize").minimize_scalar(
+        f, bounds=(low, high), method="bounded", options={"xatol": 1e-9}
+    )
+    return float(found.x), float(found.fun)
 
 
 def _crossing(f: Callable[[float], float], start: float, step: float, edge: float) -> float:
@@ -154,7 +136,4 @@ def _crossing(f: Callable[[float], float], start: float, step: float, edge: floa
         near, far = far, far + (far - start)
         if abs(far - start) > abs(WIDEST * step):
             return inf if step > 0 else -inf
-    for _ in range(60):
-        middle = (near + far) / 2
-        near, far = (middle, far) if f(middle) < edge else (near, middle)
-    return (near + far) / 2
+    return float(load_scipy("optimize").brentq(lambda x: f(x) - edge, near, far))

@@ -14,10 +14,11 @@ from math import exp, inf, isfinite, lgamma, log, sqrt
 
 import numpy as np
 
-from metagraph.research.study.statistics.student_t import (
+from metagraph.research.study.statistics.distributions import (
     compute_t_noncentral,
     compute_t_quantile,
     compute_t_two_sided,
+    find_t_shift,
 )
 
 LEVEL = 0.95
@@ -139,7 +140,7 @@ def compute_effect_size(a: Sequence[float], b: Sequence[float], level: float = L
         return None
     dz, less = float(d.mean()) / spread, compute_hedges_correction(n - 1)
     t = dz * sqrt(n)
-    low, high = (_shift(t, n - 1, (1 + sign * level) / 2) / sqrt(n) for sign in (1, -1))
+    low, high = (find_t_shift(t, n - 1, (1 + sign * level) / 2) / sqrt(n) for sign in (1, -1))
     return Estimate(less * dz, low, high, n)
 
 
@@ -299,27 +300,6 @@ def _half(found: Estimate) -> Estimate:
         None if found.high is None else found.high / 2,
         found.n,
     )
-
-
-def _shift(t: float, df: float, share: float) -> float:
-    """Return the noncentrality at which a share of the noncentral t distribution is up to t; by false
-    position (Illinois).
-    """
-    width = 5 * sqrt(1 + t * t / (2 * df))
-    low, high = t - width, t + width
-    f_low, f_high = compute_t_noncentral(t, df, low) - share, compute_t_noncentral(t, df, high) - share
-    side = 0
-    for _ in range(200):
-        middle = (f_low * high - f_high * low) / (f_low - f_high)
-        f = compute_t_noncentral(t, df, middle) - share
-        if abs(f) < 1e-13 or high - low < 1e-12 * max(1.0, abs(t)):
-            break
-        if f > 0:
-            low, f_low, f_high = middle, f, f_high / 2 if side > 0 else f_high
-        else:
-            high, f_high, f_low = middle, f, f_low / 2 if side < 0 else f_low
-        side = 1 if f > 0 else -1
-    return middle
 
 
 def _array(values: Sequence[float]) -> np.ndarray:

@@ -221,6 +221,7 @@ def test_files_of_another_origin_are_asked_about_before_they_are_overwritten(toy
     dialog.reject()
 
 
+@pytest.mark.nightly  # each target is written in tests/engines/test_targets.py
 def test_every_target_is_written_by_a_click(toys, tmp_path):
     """One after the other, each into a folder of its own; an avatar, which needs a mesh, says so."""
     drive = toys

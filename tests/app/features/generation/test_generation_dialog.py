@@ -23,7 +23,8 @@ from app.features.generation import learn_page
 from app.features.generation.generation_dialog import GenerationDialog
 from app.features.generation.generation_jobs import FOLDER
 from metagraph.formats.gltf.writer import write_glb
-from metagraph.formats.store import make_paths_absolute, open_project, save_project
+from metagraph.formats.project.paths import make_paths_absolute
+from metagraph.formats.store import open_project, save_project
 from metagraph.generation import offered
 from metagraph.generation.features import RATE
 from metagraph.generation.standing import hold

@@ -17,7 +17,8 @@ from app.features.export.export_dialog import ExportDialog
 from app.features.generation.generation_dialog import GenerationDialog
 from metagraph.engines.reading import read_export
 from metagraph.formats.gltf.reader import read_gltf_clips
-from metagraph.formats.store import make_paths_absolute, open_project, save_project
+from metagraph.formats.project.paths import make_paths_absolute
+from metagraph.formats.store import open_project, save_project
 from metagraph.generation.features import RATE
 from metagraph.generation.stored import Model, read_card, write_model
 from metagraph.generation.train_process import find_missing_tools

@@ -16,7 +16,8 @@ from PySide6.QtTest import QTest
 from app.features.motion_graph.cooccurrence_rates import CooccurrenceDialog
 from app.features.motion_graph.motion_graph_dialog import MotionGraphDialog
 from app.features.motion_graph.synthesis_jobs import FOLDER, LEAST, MOST
-from metagraph.formats.store import make_paths_absolute, save_project
+from metagraph.formats.project.paths import make_paths_absolute
+from metagraph.formats.store import save_project
 from metagraph.graph.conversation.model import Conversation, Rates, Segment, Side
 from metagraph.graph.model import Project
 

@@ -55,3 +55,19 @@ def test_the_page_of_actions_is_there_before_one_is_selected(qtbot, toy, documen
     assert panel.pages.currentIndex() == 0, "the layer is shown still"
     session.selection.select_actions((toy.id(document.project, "rest long"),))
     assert panel.pages.currentWidget() is made[0]
+
+
+def test_fields_of_several_actions_stand_below_their_head_however_wide_the_panel_is(qtbot, toy, document):
+    session = StageSession(document)
+    import_module(PLOTS)
+    panel = PropertiesPanel(document, session, lambda modules, go_on: go_on(), lambda page: None)
+    qtbot.addWidget(panel)
+    panel.resize(900, 300)
+    panel.show()
+    one, other = (toy.id(document.project, name) for name in ("rest long", "rest short"))
+    session.selection.select_actions((one,))
+    assert panel.action.beside, "beside the curves of one action"
+    session.selection.select_actions((one, other))
+    assert not panel.action.beside
+    session.selection.select_actions((one,))
+    assert panel.action.beside

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QGuiApplication
+from PySide6.QtGui import QColor, QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QInputDialog, QLineEdit, QMenu
 
@@ -176,6 +176,10 @@ def test_what_cannot_be_written_is_marked_and_explained_and_the_rest_is_written(
     index = table.index("rest beat lf", "stance")
     assert "nowhere" in index.data(Qt.ItemDataRole.ToolTipRole)
     assert index.data(Qt.ItemDataRole.BackgroundRole) is not None
+    cell = table.view.visualRect(index)
+    seen = table.view.viewport().grab().toImage()
+    edge = seen.pixelColor(cell.left() + cell.width() // 2, cell.top() + 1)
+    assert edge == QColor(table.rows.look.error), "a frame shows it while it is selected"
     table.type("up")
     assert table.says("rest beat lf", "stance") == "up"
     assert not table.panel.message.isVisible()

@@ -53,7 +53,7 @@ def written(path: Path, who: str, seconds: float, engine: str = "unity", task: s
 
 
 def test_what_is_no_engines_log_is_refused(study: Study, tmp_path: Path) -> None:
-    with pytest.raises(FileError, match="Unreal, Unity or Godot"):
+    with pytest.raises(FileError, match="Unreal, Unity, Godot or Blender"):
         import_engine(study, "P01", study.log("P01"))
     with pytest.raises(FileError, match=r"'P02'.*'P01'"):
         import_engine(study, "P01", written(tmp_path / "a.jsonl", "P02", 100))
@@ -79,12 +79,12 @@ def test_an_engine_is_told_beside_the_meta_graph(study: Study, tmp_path: Path) -
     assert "Unity" in format_study_page(found) and "Other conditions" in format_study_page(found)
 
 
-def test_scripts_say_that_they_were_not_run_and_write_what_is_read() -> None:
+def test_scripts_say_where_they_were_not_run_and_write_what_is_read() -> None:
     scripts = [p for p in SCRIPTS.rglob("*") if p.suffix in (".gd", ".cs", ".txt")]
-    assert len(scripts) == 3
+    assert len(scripts) == 4
     for path in scripts:
         text = path.read_text(encoding="utf-8")
-        assert "NOT RUN" in text, path.name
+        assert "NOT RUN in" in text, path.name
         for word in ("mono", "wall", "phase", "participant", "condition", "index", "engine"):
             assert word in text, (path.name, word)
 
@@ -94,5 +94,6 @@ def test_the_script_for_godot_is_one() -> None:
     parser.parse((SCRIPTS / "godot" / "metagraph_study_log.gd").read_text(encoding="utf-8"))
 
 
-def test_the_script_for_unreal_is_python() -> None:
-    compile((SCRIPTS / "unreal" / "metagraph_study_log.py.txt").read_text(encoding="utf-8"), "unreal", "exec")
+@pytest.mark.parametrize("engine", ["unreal", "blender"])
+def test_the_scripts_in_python_are_python(engine: str) -> None:
+    compile((SCRIPTS / engine / "metagraph_study_log.py.txt").read_text(encoding="utf-8"), engine, "exec")

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from metagraph.research.study.statistics import mixed as stats_mixed
+from metagraph.research.study.statistics.distributions import compute_t_quantile
 from metagraph.research.study.statistics.mixed import fit_mixed
-from metagraph.research.study.statistics.student_t import compute_t_quantile
 
 # Davies and Goldsmith, "Statistical Methods in Research and Production", 4th ed., table 6.3: yields of dyestuff,
 # five of each of six batches.

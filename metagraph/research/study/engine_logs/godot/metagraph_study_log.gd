@@ -1,7 +1,7 @@
 @tool
 extends EditorPlugin
 ## Writes the log of a timing study while people work in Godot's editor (4.2 or later): addons/metagraph_study_log.
-## NOT RUN in an editor yet: parsed only. Nothing that is typed is written.
+## Run in Godot 4.6 with a class that stands in for EditorPlugin; NOT RUN in the editor. Nothing that is typed is written.
 
 var _dock: VBoxContainer
 var _participant: LineEdit

@@ -1,5 +1,6 @@
 // Writes the log of a timing study while people work in Unity's editor (2021.3 or later): put it into a folder "Editor".
-// Window > Metagraph study log. NOT RUN in an editor yet. Nothing that is typed is written.
+// Window > Metagraph study log. Compiled and run with classes that stand in for the editor's; NOT RUN in Unity.
+// Nothing that is typed is written.
 using System;
 using System.Collections.Generic;
 using System.Diagnostics;
@@ -103,9 +104,10 @@ public sealed class MetagraphStudyLog : EditorWindow
         line.Append(clock.Elapsed.TotalSeconds.ToString("F6", CultureInfo.InvariantCulture));
         line.Append(",\"wall\":\"").Append(DateTime.UtcNow.ToString("yyyy-MM-ddTHH:mm:ss.fff", CultureInfo.InvariantCulture));
         line.Append("Z\",\"type\":\"").Append(type).Append('"');
-        foreach (var (name, value) in fields)
+        foreach (var field in fields)
         {
-            line.Append(",\"").Append(name).Append("\":");
+            object value = field.Item2;
+            line.Append(",\"").Append(field.Item1).Append("\":");
             if (value is int whole) line.Append(whole.ToString(CultureInfo.InvariantCulture));
             else line.Append(Quoted(Convert.ToString(value, CultureInfo.InvariantCulture)));
         }

@@ -727,7 +727,7 @@ namespace Metagraph
             if (directed) // the model's limb and tags are wishes, not orders
             {
                 every = Fresh(meta, every, now);
-                var fresh = every.Select(a => a.Id).ToList();
+                var fresh = new HashSet<string>(every.Select(a => a.Id));
                 found = found.Where(a => fresh.Contains(a.Id)).ToList();
                 exact = exact.Where(a => fresh.Contains(a.Id)).ToList();
                 if (every.Count == 0)
@@ -1066,19 +1066,25 @@ namespace Metagraph
         /// <summary>Return how many gestures of a stance have not played for long enough.</summary>
         public int CountFresh(string stance, double now)
         {
-            var count = 0;
             if (stance == null)
             {
-                return count;
+                return 0;
             }
             var variety = Project.Settings.Variety;
-            foreach (GraphAction action in Graph.Of(stance, "gesture"))
+            var count = Graph.Of(stance, "gesture").Count;
+            foreach (var one in Ended)
             {
-                var shows = Shows(action);
-                var needed = DirectorRules.RepeatInterval("gesture", shows, Beats) * variety;
-                if (!Ended.ContainsKey(action.Id) || now >= Ended[action.Id] + needed)
+                var ident = one.Key;
+                var end = one.Value;
+                var action = PlainMaps.Get(Graph.Actions, ident);
+                if (action == null || action.Kind != "gesture" || action.Stance != stance)
                 {
-                    count += 1;
+                    continue;
+                }
+                var shows = Shows(action);
+                if (now < end + DirectorRules.RepeatInterval("gesture", shows, Beats) * variety)
+                {
+                    count -= 1;
                 }
             }
             return count;

@@ -542,9 +542,9 @@ class Performer:
 		var directed = meta.written and self.project.settings.variety > 0
 		if directed:  # the model's limb and tags are wishes, not orders
 			every = self._fresh(meta, every, now)
-			var fresh = []
+			var fresh = {}
 			for a in every:
-				fresh.append(a.id)
+				Util.add_to(fresh, a.id)
 			var found6 = []
 			for a in found:
 				if fresh.has(a.id):
@@ -799,15 +799,18 @@ class Performer:
 
 	# Return how many gestures of a stance have not played for long enough.
 	func _count_fresh(stance, now):
-		var count = 0
 		if stance == null:
-			return count
+			return 0
 		var variety = self.project.settings.variety
-		for action in self.graph.of(stance, "gesture"):
+		var count = self.graph.of(stance, "gesture").size()
+		for ident in self.ended:
+			var end = self.ended[ident]
+			var action = self.graph.actions.get(ident)
+			if action == null or action.kind != "gesture" or action.stance != stance:
+				continue
 			var shows = self._shows(action)
-			var needed = Director.repeat_interval("gesture", shows, self.beats) * variety
-			if not self.ended.has(action.id) or now >= self.ended[action.id] + needed:
-				count += 1
+			if now < end + Director.repeat_interval("gesture", shows, self.beats) * variety:
+				count -= 1
 		return count
 
 	# Return when the stance was last changed; minus infinity for never.
