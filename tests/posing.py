@@ -22,10 +22,13 @@ from metagraph.playback.life.schedule import Schedule
 from metagraph.playback.life.track import Track
 from metagraph.playback.manual_playback import ManualEvaluator, ManualPlan
 from metagraph.playback.plan import Plan
+from metagraph.playback.player import compute_morphs_at, pose_at
 from metagraph.playback.posing.composer import ComposerRig
 from metagraph.playback.posing.overlay import Overlay
 from metagraph.playback.posing.rigs import get_rigs
 from metagraph.playback.posing.weight import Weight
+
+__all__ = ["compute_morphs_at", "pose_at"]
 
 KEPT = 8
 _kept: list[Evaluator] = []
@@ -38,16 +41,6 @@ def evaluator(plan: Plan, project: Project) -> Evaluator:
     _kept.insert(0, Evaluator(plan, project))
     del _kept[KEPT:]
     return _kept[0]
-
-
-def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> Pose:
-    return evaluator(plan, project).at(seconds, alive)
-
-
-def compute_morphs_at(
-    plan: Plan, project: Project, seconds: float, alive: bool = True, composed: Pose | None = None
-) -> dict[str, float]:
-    return evaluator(plan, project).morphs_at(seconds, alive, composed)
 
 
 def overlaid(plan: Plan, project: Project, seconds: Any, over: Overlay | None, alive: bool = True) -> Pose:

@@ -136,6 +136,7 @@ FRONT_DOORS = (
     "metagraph/motion/skeleton.py",
     "metagraph/playback/evaluator.py",
     "metagraph/playback/planner.py",
+    "metagraph/playback/player.py",
     "metagraph/playback/posing/*.py",
     "metagraph/speech/clauses.py",
     "metagraph/speech/drive.py",

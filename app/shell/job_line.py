@@ -44,9 +44,9 @@ class JobLine(QWidget):
     def _show(self) -> None:
         job = self.jobs.running[-1] if self.jobs.running else None
         self.setVisible(job is not None)
+        self._latest, self._total, self._first, self._began = None, 0, 0, 0.0
         if job is not None:
             self.label.setText(job.title)
-            self._latest, self._total = None, 0
             self.bar.setRange(0, 0)
             job.progress.connect(self._progress, Qt.ConnectionType.UniqueConnection)
 

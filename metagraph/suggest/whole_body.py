@@ -31,7 +31,7 @@ CARRIER: Layer = "arms"  # the layer that moves the whole body if all of it was 
 SCALE: Mapping[Layer, float] = {layer: TYPICAL[CARRIER] / TYPICAL[layer] for layer in LAYERS}
 # Of the clips that do not move a layer, the share that is in another than its usual pose: arms that gesture
 # while the weight is on the other leg, a nod with crossed arms.
-TOGETHER = 0.28
+TOGETHER = 0.29
 # The layers whose clips show that for a layer. A head moves along with arms, and with a trunk that leans.
 BESIDE: Mapping[Layer, tuple[Layer, ...]] = {"body": ("arms", "head"), "arms": ("body", "head")}
 CLEAR = 0.7  # confidence of the layer that a clip moves, from which on it counts

@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections.abc import Collection
 from math import ceil, floor
 
+import numpy as np
+
 from metagraph.graph import edits
 from metagraph.graph.checks.end_gaps import (
     FAR,
@@ -16,9 +18,10 @@ from metagraph.graph.checks.end_gaps import (
     UNHURRIED,
     Edge,
     find_end_gaps,
+    measure_distances_to_stance,
     measure_slides,
 )
-from metagraph.graph.model import LAYERS, Project, Timing
+from metagraph.graph.model import LAYERS, Action, Project, Timing
 from metagraph.graph.repeating import LEAST_CYCLE, cycle_of, usual_repeat
 
 NEAR = 0.05  # metres of a figure TALL metres high that nobody sees a blend go
@@ -26,6 +29,8 @@ SLIDES = 0.25  # of that pace: how fast the hips go over the floor
 EDGES: tuple[Edge, Edge] = ("begins", "ends")
 SHARE = 0.45  # of a clip that a blend may take
 LONGEST = 3.0  # seconds that one repeats to have room for its blends
+SWINGS = 0.25  # metres of a figure TALL metres high: a clip this far from its stance at a cut may go farther
+RATE = 30.0  # moments a second at which that is looked at
 SLOWER = 1.1  # times as long a blend for one that repeats, whose own movement is added
 
 
@@ -36,7 +41,8 @@ def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
     """
     if project.skeleton is None:
         return project
-    pace, near, shows = (x * project.skeleton.height / TALL for x in (UNHURRIED, NEAR, FAR))
+    scale = project.skeleton.height / TALL
+    pace, near, shows = (x * scale for x in (UNHURRIED, NEAR, FAR))
     changes = {}
     for layer in LAYERS:
         for action in project.graphs[layer].actions.values():
@@ -48,6 +54,9 @@ def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
             far = {g.edge: g.metres for g in find_end_gaps(project, graph, action)}
             slides = measure_slides(project, graph, action)
             most, own, repeat = SHARE * (end - start), pace, timing.repeat
+            for edge, metres in far.items():
+                if metres > SWINGS * scale and repeat == 0:
+                    far[edge] = max(metres, pace * _time_swing(project, action, edge, pace, most))
             if (cycle := cycle_of(action.kind, timing, start, end)) > 0:
                 own = pace / SLOWER
                 needed = max(far.values(), default=0.0) / own / SHARE_SEEN
@@ -78,6 +87,18 @@ def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
             if longer:
                 changes[action.id] = {"timing": longer}
     return edits.update_each(project, changes) if changes else project
+
+
+def _time_swing(project: Project, action: Action, edge: Edge, pace: float, most: float) -> float:
+    """Return how long a blend has to be that also covers where a clip goes while it blends: a wave that was
+    cut at its lowest is soon overhead. At most `most` seconds.
+    """
+    start, end = project.span(action)
+    ways = np.arange(int(most * RATE) + 1) / RATE
+    times, which = (start + ways, 0) if edge == "begins" else (end - ways, 1)
+    farthest = np.maximum.accumulate(measure_distances_to_stance(project, action, times)[which])
+    enough = np.flatnonzero(ways * pace >= farthest)
+    return float(ways[enough[0]]) if len(enough) else most
 
 
 def _both_seen(into: float, out: float, timing: Timing, room: float) -> tuple[float, float]:

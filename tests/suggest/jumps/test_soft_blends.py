@@ -10,8 +10,9 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.check import check_project
-from metagraph.graph.checks.end_gaps import LONG
+from metagraph.graph.checks.end_gaps import LONG, TALL, UNHURRIED, measure_distances_to_stance
 from metagraph.graph.model import Project
+from metagraph.motion import rotation
 from metagraph.suggest.jumps.soft_blends import repeat_actions, soften_blends
 
 
@@ -84,3 +85,28 @@ def test_blends_of_a_short_gesture_leave_something_to_be_seen(project: Project, 
     timing = after.action(wave).timing  # type: ignore[union-attr]
     assert max(timing.blend_in, timing.blend_out) > 0.1
     assert not [x for x in check_project(after) if x.action == wave and x.code == "hardly-seen"]
+
+
+def test_a_blend_covers_where_a_clip_swings_while_it_blends(toy: Any) -> None:
+    project = toy.project()
+    wave = project.action(toy.id(project, "rest wave rt"))
+    assert wave is not None
+    entry = project.clips[wave.clip]
+    assert entry.motion is not None
+    first = entry.motion.rotations[:1]
+    turned = rotation.multiply(rotation.conjugate(first), entry.motion.rotations)
+    wide = rotation.multiply(first, rotation.scale_rotation(turned, np.full(turned.shape[:-1], 4.0)))
+    fps = entry.fps / 3
+    motion = replace(entry.motion, fps=fps, rotations=wide.astype(np.float32))
+    project = replace(project, clips={**project.clips, entry.id: replace(entry, motion=motion, fps=fps)})
+    cut = edits.update_actions(project, [wave.id], timing={"start": 0.6, "blend_in": 0.1})
+    action = soften_blends(cut).action(wave.id)
+    assert action is not None
+    at_the_cut, farthest = (
+        float(measure_distances_to_stance(cut, action, np.linspace(0.6, 0.6 + reach, 20))[0].max())
+        for reach in (0.0, action.timing.blend_in)
+    )
+    assert farthest > 1.2 * at_the_cut, "it goes on outwards"
+    pace = UNHURRIED * cut.skeleton.height / TALL  # type: ignore[union-attr]
+    most = 0.45 * (cut.span(action)[1] - 0.6)
+    assert action.timing.blend_in == pytest.approx(min(most, farthest / pace), abs=0.05)
