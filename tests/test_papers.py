@@ -28,6 +28,8 @@ VERDICTS = ("same", "different", "better", "missing")
 NUMBER = re.compile(r"(?<![\w.-])\d[\d,]*(?:\.\d+)?")
 POWER = re.compile(r"(\d+(?:\.\d+)?) x 10\^(-?\d+)")
 VALUE = re.compile(r"`([^`]+)` = (-?[\d.]+)")
+FIGURE = re.compile(r"\d+(?:\.\d+)? ?(?:%|s\b|times|transitions|cm)")
+COMMAND = re.compile(r"`(?:metagraph|python) [^`]+`")
 DOTTED = re.compile(r"(?<![.\w])[a-z_]+(?:\.\w+)+")
 
 
@@ -170,6 +172,14 @@ def test_every_value_is_the_codes_and_the_papers_where_it_is_called_the_same(pap
 def test_what_is_called_the_same_or_better_than_a_number_has_a_number_that_is_computed(paper: str) -> None:
     lacking = [row for row in of(paper) if row.verdict in ("same", "better") and row.there]
     assert not [row for row in lacking if not VALUE.search(row.here)]
+
+
+@EVERY
+def test_other_figures_of_what_is_called_the_same_or_better_say_which_command_makes_them(paper: str) -> None:
+    for row in of(paper):
+        words = re.sub(r"`[^`]*`", "", VALUE.sub("", row.here))
+        if row.verdict in ("same", "better") and FIGURE.search(words):
+            assert COMMAND.search(row.here), row
 
 
 @EVERY

@@ -36,3 +36,15 @@ def test_an_arm_that_has_nothing_is_named_and_gets_twins(
     assert not list_one_sided(project)
     made = [c for c in project.clips.values() if c.path.startswith("mirrored/")]
     assert len(made) == lacking["actions"] and all(c.motion is not None for c in made)
+
+
+def test_importing_what_has_one_arm_only_names_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "p.metagraph.yaml"
+    assert main(["import", str(path), str(SAMPLE), "--json"]) == 0
+    shown = capsys.readouterr()
+    assert json.loads(shown.out)["one arm"] == dict.fromkeys(
+        ("arms crossed", "hand to chin", "hands clasped"), "left"
+    )
+    assert shown.err.count("one arm: ") == 3 and "--twins adds mirrored twins" in shown.err
+    main(["import", str(path), str(SAMPLE), "--json"])
+    assert "one arm" not in capsys.readouterr().err, "it was said before"

@@ -67,6 +67,8 @@ def test_a_row_of_percentages_comes_of_a_few_counts() -> None:
     assert find_fewest_transitions((33.3, 33.3, 33.3)) == 3
     assert find_fewest_transitions((26.7, 33.3, 6.7, 13.3, 20)) == 15
     assert find_fewest_transitions((1.2345, 98.7655)) == 0
+    least = [find_fewest_transitions(row) for row in FIGURE_11]
+    assert sum(least) == 55 and least[5] == 1
 
 
 def test_the_graph_that_figure_1_imagines_has_as_many_connections_as_listing_them_gives() -> None:

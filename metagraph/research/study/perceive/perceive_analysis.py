@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+from math import sqrt
 from typing import Literal
 
 import numpy as np
@@ -18,6 +19,7 @@ from metagraph.research.study.perceive import binomial, crossed
 from metagraph.research.study.perceive.crossed import Crossed
 from metagraph.research.study.perceive.mismatched import list_mismatched_systems
 from metagraph.research.study.perceive.perceive_data import Answers, Rated, RaterChoice
+from metagraph.research.study.perceive.perceive_plan import PerceivePlan
 from metagraph.research.study.statistics import mixed as stats_mixed
 from metagraph.research.study.statistics import small_samples as stats
 from metagraph.research.study.statistics.distributions import compute_t_quantile, compute_t_two_sided
@@ -136,34 +138,39 @@ def analyse_answers(answers: Answers) -> PerceiveResults:
         _share(lefts),
         _share(list(answers.same)),
         tuple(_cautions(answers, pairs, lefts)),
-        tuple(compare_systems(answers)),
+        tuple(compare_systems(plan, pairs)),
     )
 
 
-def compare_systems(answers: Answers) -> list[ComparedSystems]:
-    """Return how much better one system's own sound is recognised than another's, of each two systems.
+def compare_systems(plan: PerceivePlan, pairs: Sequence[ComparedPair]) -> list[ComparedSystems]:
+    """Return how much better one system's own sound is recognised than another's, of each two systems: the
+    difference of their models' preferences, with Welch's degrees of freedom.
 
-    People and items deviate for each system by themselves: no more is taken from the same ones having judged
-    both than is known, so that intervals are rather too wide than too narrow.
+    Nothing is taken from the same people having judged both, so that intervals are rather too wide.
     """
+    models = {pair.pair: pair.model for pair in pairs}
     found = []
-    for (a, one), (b, other) in combinations(list_mismatched_systems(answers.study.plan).items(), 2):
-        rows = [c for c in answers.choices if c.pair in (one, other)]
-        effects = {
-            "both": [1.0] * len(rows),
-            "difference": [0.5 if c.pair == one else -0.5 for c in rows],
-            "side": [0.5 if c.left else -0.5 for c in rows],
-        }
-        model = crossed.fit_crossed(
-            [float(c.first) for c in rows],
-            effects,
-            [(c.participant, c.pair) for c in rows],
-            [(c.item, c.pair) for c in rows],
-        )
-        if model is not None:
-            found.append(ComparedSystems((a, b), model.effects["difference"], model.p["difference"]))
+    for (a, one), (b, other) in combinations(list_mismatched_systems(plan).items(), 2):
+        both = [(m.effects["preference"], m.df["preference"]) for m in (models[one], models[other]) if m]
+        if len(both) == 2:
+            value, (error, df) = both[0][0].value - both[1][0].value, _add_errors(both)
+            half = compute_t_quantile((1 + LEVEL) / 2, df) * error
+            difference = Estimate(value, value - half, value + half, sum(e.n for e, _ in both))
+            found.append(ComparedSystems((a, b), difference, compute_t_two_sided(value / error, df)))
     together = stats.apply_holm([each.p for each in found])
     return [replace(each, together=p) for each, p in zip(found, together, strict=True)]
+
+
+def _add_errors(found: Sequence[tuple[Estimate, float]]) -> tuple[float, float]:
+    """Return the standard error of a difference of estimates, each with its degrees of freedom, and its
+    own.
+    """
+    variances = []
+    for e, df in found:
+        assert e.low is not None and e.high is not None
+        variances.append(((e.high - e.low) / 2 / compute_t_quantile((1 + LEVEL) / 2, df)) ** 2)
+    total = sum(variances)
+    return sqrt(total), total**2 / sum(v * v / df for v, (_, df) in zip(variances, found, strict=True))
 
 
 def _share(values: Sequence[bool]) -> tuple[Estimate, float | None] | None:

@@ -42,8 +42,8 @@ mixed model with deviations of people and items that cross (restricted maximum l
 people's means.</dd>
 <dt>Tests</dt><dd>One for each pair, of choices and of each question; Holm's correction over all of them.</dd>
 <dt>Systems beside each other</dt><dd>If the study asks which sound belongs to a motion: of each two
-systems, the difference of the log odds of choosing the own sound, by the mixed model with people and items
-of each system by themselves; Holm's correction over these differences.</dd>
+systems, the difference of the log odds of choosing the own sound in their mixed models, with Welch's degrees
+of freedom; Holm's correction over these differences.</dd>
 <dt>Order</dt><dd>Shares in the first and in the second half of each person's session, compared by Fisher's
 exact test. Sides: all choices of the left one against a half.</dd>
 <dt>Who counts</dt><dd>Who came to the end and missed no more checks than the plan allows. What would come of

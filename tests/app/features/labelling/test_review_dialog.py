@@ -7,12 +7,14 @@ from __future__ import annotations
 import subprocess
 from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QInputDialog
 
+from app.features.character.character_panel import PreviewPanel
 from metagraph.formats.store import open_project
 from metagraph.research.study.machines.klm import predict_seconds
 from metagraph.suggest.jumps.bridges import find_missing_bridges
@@ -567,6 +569,24 @@ def test_why_stances_cannot_be_joined_is_said_and_not_counted_as_a_transition(pr
     dialog.work.unbridged = ('"up" is not joined to the others: …',)
     dialog._refresh()
     assert dialog.queue.parted.text() == dialog.work.unbridged[0]
+    dialog.close()
+
+
+@pytest.mark.parametrize("speed", [1.0, 2.0])
+def test_clips_are_watched_at_the_speed_chosen_below_the_character(practice, monkeypatch, speed):
+    dialog = begun(practice)
+    stage = dialog.stage
+    box = practice.window.findChild(PreviewPanel).speed_box
+    chosen = box.findText(f"{speed:g}×")
+    box.setCurrentIndex(chosen)
+    box.activated.emit(chosen)
+    stage._timer.stop()
+    stage.playing, stage.seconds = True, 0.0
+    monkeypatch.setattr(stage, "_clock", SimpleNamespace(restart=lambda: 100))
+    practice.wait(stage.isVisible)
+    stage._tick()
+    assert stage.seconds == pytest.approx(0.1 * speed)
+    practice.session.transport.speed = 1.0
     dialog.close()
 
 

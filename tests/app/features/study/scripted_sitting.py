@@ -1,6 +1,7 @@
-"""Takes part in the pilot kit from its command to its data, with real events in the window.
+"""Takes part in a study from its command to its data, with real events in the window.
 
-`python pilot_sitting.py FOLDER`, on an X server with xdotool. A scripted participant reads, agrees, practises, wires
+`python scripted_sitting.py pilot FOLDER` or `... run STUDY --participant P01`: the words of `metagraph study`, on an X
+server with xdotool. A scripted participant reads, agrees, practises, wires
 the clips of each task without a mistake and answers. One who does not know names goes by what the reference says.
 """
 
@@ -15,7 +16,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import QPoint, Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
@@ -53,6 +54,14 @@ def wanted(guide: Any, project: Project) -> Project:
     return replace(reference, clips=clips)
 
 
+def answer(question: Any, n: int) -> None:
+    """Choose a number by a click, or put a mark on a line."""
+    if hasattr(question, "mark"):
+        QTest.mouseClick(question.mark, LEFT, pos=QPoint(question.mark.width() * (3 + n) // 12, 18))
+    else:
+        QTest.mouseClick(question.group.button(3 if n % 2 == 0 else 1), LEFT)
+
+
 def take_part() -> None:
     from app.features.study.study_guide import Guide
     from app.shell.window import Window
@@ -77,7 +86,7 @@ def take_part() -> None:
             QTest.keyClick(p.page.tick, Qt.Key.Key_Space)
         elif phase.questionnaire is not None:
             for n, question in enumerate(p.page.questions):
-                QTest.mouseClick(question.group.button(3 if n % 2 == 0 else 1), LEFT)
+                answer(question, n)
         elif phase.works:
             p.working()
             drive.pause(300)
@@ -96,6 +105,8 @@ def take_part() -> None:
 def go() -> None:
     try:
         take_part()
+        if sys.argv[1] == "run":  # its window stays open for the next participant
+            QTimer.singleShot(200, QApplication.quit)
     except BaseException:
         traceback.print_exc()
         sys.stderr.flush()
@@ -105,4 +116,4 @@ def go() -> None:
 if __name__ == "__main__":
     prepare_application()
     QTimer.singleShot(1500, go)
-    sys.exit(main(["study", "pilot", sys.argv[1]]))
+    sys.exit(main(["study", *sys.argv[1:]]))
