@@ -7,6 +7,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from app.cli.command_output import add_performance_arguments, choose_plan, open_for_command
+from app.cli.progress_line import ProgressLine
 from app.cli.render_command import Shot, draw_to, load_figure, mix_sound
 from app.stage.playback_source import ShownPlayback
 from metagraph.formats.store import SUFFIX
@@ -54,7 +55,8 @@ def run(options: Namespace) -> int:
     if not quiet:
         print(f"contact sheet  {sheet.resolve()}", flush=True)
     shot = Shot(made.end, (640, 360), 30, 0, "dark")
-    draw_to(video, seen, shot, mix_sound(shown, folder, made.end))
+    line = ProgressLine(options, "Drawing pictures")
+    draw_to(video, seen, shot, mix_sound(shown, folder, made.end), line.tell)
     if not quiet:
         print(f"video          {video.resolve()}", flush=True)
     exported = write_export(project, out, character=folder / project.character if project.character else None)

@@ -19,7 +19,8 @@ class ProgressLine:
     def __init__(self, options: Namespace, what: str) -> None:
         self._what = what
         self._shown = sys.stderr.isatty() and not getattr(options, "json", False)
-        self._began = self._last = time.monotonic()
+        self._last = 0.0
+        self._first: tuple[float, int] | None = None  # when it was first told, and how much was done then
         self._length = 0
 
     def tell(self, done: int, total: int, more: str = "") -> None:
@@ -27,12 +28,13 @@ class ProgressLine:
         last part.
         """
         now = time.monotonic()
+        self._first = began, before = self._first or (now, done)
         if not self._shown or (done < total and self._length and now - self._last < OFTEN):
             return
         self._last = now
         line = f"{self._what}: {done:,} of {total:,}"
-        if 0 < done < total and now - self._began > EARLY:
-            line += f", about {describe_seconds((now - self._began) / done * (total - done))} left"
+        if before < done < total and now - began > EARLY:
+            line += f", about {describe_seconds((now - began) / (done - before) * (total - done))} left"
         line += f"  {more[:50]}" if more else ""
         ended = done >= total
         print(f"\r{line:<{self._length}}", end="\n" if ended else "", file=sys.stderr, flush=True)

@@ -72,11 +72,11 @@ class JobLine(QWidget):
     def _estimate(self, done: int, total: int) -> str:
         """Return how long the work will still take, in words; nothing at first, and at its end."""
         now = time.monotonic()
-        if total != self._total or done < self._first:  # other work, counted anew
+        if total != self._total or done < self._first:  # other work, counted by itself
             self._total, self._first, self._began = total, done, now
         if done <= self._first or done >= total or now - self._began < EARLY:
             return ""
-        return describe_left((now - self._began) / (done - self._first) * (total - done))
+        return describe_time_left((now - self._began) / (done - self._first) * (total - done))
 
     def _tell_end(self, title: str, error: Exception | None, stands: bool) -> None:
         """Report how a job ended whose dialog was closed."""
@@ -95,7 +95,7 @@ class JobLine(QWidget):
             self.told.emit(tr("Cancelled."))
 
 
-def describe_left(seconds: float) -> str:
+def describe_time_left(seconds: float) -> str:
     """Return how long something will still take, rounded as an estimate is."""
     if seconds < 90:
         return tr("about {seconds:,} s left", seconds=max(1, round(seconds)))

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from metagraph.graph.model import ClipEntry
 from metagraph.motion.clip import Clip
-from metagraph.motion.in_place import keep_in_place
+from metagraph.motion.in_place import keep_in_place, stand_elsewhere
 from metagraph.motion.retime import Course, apply_retiming
 
 
@@ -34,8 +34,12 @@ def with_changed_file(entry: ClipEntry, source: Clip, digest: str) -> ClipEntry:
 
 
 def with_source(entry: ClipEntry, source: Clip) -> ClipEntry:
-    """Return an entry whose clip was read, kept in place if it is to be, with its retiming made."""
-    motion = apply_retiming(keep_in_place(source) if entry.in_place else source, entry.retime)
+    """Return an entry whose clip was read, kept in place if it is to be, where it is to stand, with its
+    retiming made.
+    """
+    kept = keep_in_place(source) if entry.in_place else source
+    stands = stand_elsewhere(kept, entry.turned, entry.moved_x, entry.moved_z)
+    motion = apply_retiming(stands, entry.retime)
     return replace(
         entry,
         frames=motion.frames,

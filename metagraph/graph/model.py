@@ -308,6 +308,8 @@ class ClipEntry:
     of the skeleton it is retargeted from, "" if the file has the project's own. `made_by` and `made_seed` are
     the learned model that generated it and the seed; `made_by` is "" for other clips. `retime` says how it is
     played faster, slower or held. `in_place` removes the distance that its hips have moved by its end.
+    `turned` and `moved_x`, `moved_z` are radians about the vertical and metres to the left and ahead by which
+    it stands elsewhere than it was recorded.
     `timed_on` is the length of the clip in seconds when its actions were timed, if its file has another
     length now; else 0. `motion` is the loaded clip as it plays, None while the file is missing. `source` is
     the clip as it was read, if that differs (see `graph.editing.retiming`).
@@ -328,6 +330,9 @@ class ClipEntry:
     made_seed: int = 0
     retime: Retime = field(default_factory=Retime)
     in_place: bool = False
+    turned: float = 0.0
+    moved_x: float = 0.0
+    moved_z: float = 0.0
     timed_on: float = 0.0
 
     @property

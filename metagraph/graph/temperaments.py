@@ -52,13 +52,7 @@ def set_temperament(project: Project, name: str, usual: Mapping[Layer, Markov]) 
     model that was learned stays as it is. Raises KeyError for a name that is none.
     """
     of = TEMPERAMENTS[name]
-    markov = dict(project.markov)
-    for layer in LAYERS:
-        own = markov.pop(layer, usual[layer])
-        if replace(own, gap=usual[layer].gap) != usual[layer]:  # learned
-            markov[layer] = own
-        elif of.rests != 1.0:
-            markov[layer] = replace(usual[layer], gap=round(usual[layer].gap * of.rests, 3))
+    project = set_rest_scale(project, of.rests, usual)
     life: Life = msgspec.structs.replace(
         project.life,
         valence=of.valence,
@@ -66,7 +60,36 @@ def set_temperament(project: Project, name: str, usual: Mapping[Layer, Markov]) 
         aversion_rate=of.aversion_rate,
         blinks=of.blinks,
     )
-    return replace(project, markov=markov, life=life, settings=replace(project.settings, variety=of.variety))
+    return replace(project, life=life, settings=replace(project.settings, variety=of.variety))
+
+
+def set_rest_scale(project: Project, scale: float, usual: Mapping[Layer, Markov]) -> Project:
+    """Return the project with the rests of its models so many times the usual ones. usual: the models'
+    defaults by layer; a model that was learned stays as it is.
+    """
+    markov = dict(project.markov)
+    for layer in LAYERS:
+        own = markov.pop(layer, usual[layer])
+        if _is_learned(own, usual[layer]):
+            markov[layer] = own
+        elif scale != 1.0:
+            markov[layer] = replace(usual[layer], gap=round(usual[layer].gap * scale, 3))
+    return replace(project, markov=markov)
+
+
+def find_rest_scale(project: Project, usual: Mapping[Layer, Markov]) -> float | None:
+    """Return how many times the usual ones the rests of a project's models are: of the first layer whose
+    model was not learned; None if all were.
+    """
+    for layer in LAYERS:
+        own = project.markov.get(layer, usual[layer])
+        if not _is_learned(own, usual[layer]) and usual[layer].gap > 0:
+            return round(own.gap / usual[layer].gap, 3)
+    return None
+
+
+def _is_learned(own: Markov, usual: Markov) -> bool:
+    return replace(own, gap=usual.gap) != usual
 
 
 def find_temperament(project: Project, usual: Mapping[Layer, Markov]) -> str | None:

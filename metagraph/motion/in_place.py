@@ -55,6 +55,37 @@ def keep_in_place(clip: Clip) -> Clip:
     )
 
 
+def stand_elsewhere(clip: Clip, turn: float, x: float, z: float) -> Clip:
+    """Return the clip turned about the vertical through the origin by radians, then moved by metres."""
+    if turn == 0.0 and x == 0.0 and z == 0.0:
+        return clip
+    about = rotation.from_axis_angle(np.array([0.0, 1.0, 0.0]), turn)
+    roots = np.flatnonzero(clip.skeleton.parents < 0).tolist()
+    translated = tuple(sorted({*clip.translated, *roots}))
+    poses = clip.poses()
+    rotations, translations = poses.rotations.copy(), poses.translations.astype(float)
+    for root in roots:
+        turns = rotations[:, root].astype(float)
+        rotations[:, root] = rotation.multiply(np.broadcast_to(about, turns.shape), turns)
+        places = translations[:, root]
+        moved = rotation.rotate_vectors(np.broadcast_to(about, (len(places), 4)), places)
+        translations[:, root] = moved + np.array([x, 0.0, z])
+    return replace(
+        clip,
+        rotations=rotation.make_continuous(rotations),
+        translations=translations[:, list(translated)].astype(np.float32),
+        translated=translated,
+    )
+
+
+def find_spot(clip: Clip, hips: int, second: float) -> tuple[Array, Array]:
+    """Return how the hips are turned in the character's space at a second, and where they are on the ground,
+    metres: [4] and [2].
+    """
+    turns, places = clip.skeleton.globals(clip.pose_at(second))
+    return turns[hips].astype(float), places[hips, (0, 2)].astype(float)
+
+
 def measure_travel(clip: Clip, hips: int, start: float, end: float) -> float:
     """Return how far the hips are over the ground from where they were, metres, between two seconds."""
 
@@ -64,6 +95,11 @@ def measure_travel(clip: Clip, hips: int, start: float, end: float) -> float:
         return float(np.hypot(way[0], way[2]))
 
     return clip.measured(("travel", hips, start, end), measure)
+
+
+def measure_turn(before: Array, after: Array) -> float:
+    """Return by how much two rotations [4] are turned about the vertical, -pi to pi."""
+    return _heading(rotation.multiply(after, rotation.conjugate(before)))
 
 
 def _heading(turn: Array) -> float:

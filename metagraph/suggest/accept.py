@@ -14,6 +14,7 @@ from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, Kind, Layer, Project
 from metagraph.playback.timing.phases import find_phases
 from metagraph.suggest.flags import is_unlikely
+from metagraph.suggest.gather import gather_clips
 from metagraph.suggest.jumps.cut_swings import begin_at_turns
 from metagraph.suggest.jumps.soft_blends import soften_blends
 from metagraph.suggest.proposal import Proposal, Proposals, RestMoment, StancePlace, simplify_stance_name
@@ -77,7 +78,9 @@ def accept(
         except EditError as error:
             left[p.clip] = describe_error(error)
     known = {action.id for action in before.actions()}
-    project = soften_blends(begin_at_turns(_begun(before, project), known), known)
+    used = {action.clip for action in before.actions()}
+    project = begin_at_turns(_begun(before, project), known)
+    project = soften_blends(gather_clips(project, [clip for clip in placed if clip not in used]), known)
     return AcceptedProposals(project, tuple(placed), left, held)
 
 

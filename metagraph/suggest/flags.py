@@ -21,7 +21,7 @@ Array = NDArray[Any]
 
 ALIKE = 0.3  # share of a check's gain that each other clip with the same words adds
 LOOK = 0.2  # probability of being wrong; from this on a check is worth its time
-PLACED = 0.6  # confidence of a stance; below it a clip may be on the wrong one, whatever else is certain
+PLACED = 0.6  # confidence of a stance or layer; below it, it may be the wrong one, whatever else is certain
 FITTING = 0.8  # the same for a clip that would jump in that stance
 LOST = 0.5  # confidence below which a stance is almost unknown
 UNLIKELY = 0.4  # confidence of a stance; below it a clip is not placed unless somebody says so
@@ -96,9 +96,14 @@ def estimate_chance_wrong(p: Proposal) -> float:
     """Return how likely a proposal is wrong in what decides where its clip goes, 0..1. It is also wrong if
     nobody can be sure of its stance, or of the one that a transition ends in: a clip that begins 40 cm from
     its stance belongs elsewhere, whatever its name says. A clip that would jump there has to be more certain.
+    The same holds for its layer.
     """
-    sure = _least_certain_stance(p)
-    return max(_fitted_chance(p), 1 - sure if sure < (FITTING if p.good is False else PLACED) else 0.0)
+    stance, layer = _least_certain_stance(p), p.layer.confidence
+    return max(
+        _fitted_chance(p),
+        1 - stance if stance < (FITTING if p.good is False else PLACED) else 0.0,
+        1 - layer if layer < PLACED else 0.0,
+    )
 
 
 def explain_doubt(p: Proposal) -> str:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -31,10 +32,11 @@ CARRIER: Layer = "arms"  # the layer that moves the whole body if all of it was 
 SCALE: Mapping[Layer, float] = {layer: TYPICAL[CARRIER] / TYPICAL[layer] for layer in LAYERS}
 # Of the clips that do not move a layer, the share that is in another than its usual pose: arms that gesture
 # while the weight is on the other leg, a nod with crossed arms.
-TOGETHER = 0.28
+TOGETHER = 0.29
 # The layers whose clips show that for a layer. A head moves along with arms, and with a trunk that leans.
 BESIDE: Mapping[Layer, tuple[Layer, ...]] = {"body": ("arms", "head"), "arms": ("body", "head")}
 CLEAR = 0.7  # confidence of the layer that a clip moves, from which on it counts
+ENOUGH = 1000  # clips; of more, evenly chosen ones tell whether they were recorded so
 FEW = 3  # clips of one stance from which on its name shows what is done in it
 MIXED = 0.2  # share of those clips that move another layer than most of their stance
 APART: Mapping[Layer, float] = {"arms": 0.02, "head": 0.012, "body": 0.01}  # heights; less is the same pose
@@ -109,6 +111,7 @@ def _seen_whole(traits: Mapping[str, Traits]) -> bool:
         for clip, t in traits.items()
         if t.face == 0 and not has_no_measures(t) and all(t.layers[layer].names for layer in ("arms", "body"))
     }
+    moving = dict(islice(moving.items(), 0, None, 1 + len(moving) // ENOUGH))
     shapes = discover(moving, CARRIER, together=True)
     held: list[tuple[Shape, Layer]] = []  # stance and layer of clips that stay in a stance
     settled = 0

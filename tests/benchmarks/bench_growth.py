@@ -19,7 +19,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from bench_projects import large  # noqa: E402
+from bench_projects import SAMPLE, large  # noqa: E402
 from bench_waits import make_clips  # noqa: E402
 
 from metagraph.engines.export_document import list_used_clips, to_document  # noqa: E402
@@ -55,7 +55,7 @@ def indexed(project: Project) -> Project:
 
 def with_actions(count: int, folder: Path) -> Row:
     """Return what a project of so many actions costs."""
-    project, path = indexed(large(count)), folder / f"{count}{SUFFIX}"
+    project, path = indexed(large(count, open_project(SAMPLE).project)), folder / f"{count}{SUFFIX}"
     ids = [action.id for action in project.actions()]
     stance = project.graphs["arms"].start or ""
     numbers = iter(range(1, 1000))

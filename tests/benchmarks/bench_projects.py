@@ -32,9 +32,9 @@ ROUNDS, EDITS = 5, 1000
 SAMPLE = ROOT / "sample_clips" / f"sample{SUFFIX}"
 
 
-def large(actions: int) -> Project:
-    """The sample project with copies of its actions until there are so many."""
-    project = read_project(SAMPLE)
+def large(actions: int, project: Project | None = None) -> Project:
+    """A project, by default the sample without motion, with copies of its actions until there are so many."""
+    project = read_project(SAMPLE) if project is None else project
     while (count := sum(1 for _ in project.actions())) < actions:
         for layer in LAYERS:
             for (stance, kind), bucket in list(project.graphs[layer].index.items()):

@@ -72,7 +72,7 @@ def test_what_is_sent_while_other_requests_wait_is_answered_at_the_next_tick(sam
         assert relay.ready is not None
         address = str(relay.ready.websocket)
         with connect(address) as flood, connect(address) as line:
-            until(lambda: len(session.clients) == 2, relay, session, begin)  # that they came is told, too
+            until(lambda: len(session.clients) == 2, relay, session, begin)  # that they came is reported, too
             flood.send('{"do":"nod"}')
             deadline = time.monotonic() + 30
             while relay._in.empty():

@@ -89,6 +89,11 @@ def test_a_clip_whose_stance_nobody_is_sure_of_needs_a_look_whatever_else_is_cer
     assert needs_look(replace(passing, end_stance=Belief("t", sure, "ends 40 cm from it"))) or not look
 
 
+@pytest.mark.parametrize(("sure", "look"), [(0.55, True), (0.64, False)])
+def test_a_clip_whose_layer_nobody_is_sure_of_needs_a_look(sure: float, look: bool) -> None:
+    assert needs_look(replace(SURE, layer=Belief("arms", sure, "its arms move"))) == look
+
+
 @pytest.mark.parametrize(("sure", "look"), [(0.63, True), (0.84, False)])
 def test_a_clip_that_would_jump_in_its_stance_has_to_be_more_certain_of_it(sure: float, look: bool) -> None:
     jumping = replace(SURE, good=False, stance=Belief("s", sure, "nearest"))

@@ -23,9 +23,17 @@ from app.project.jobs import Jobs, WindowJob
 from app.stage.session import StageSession
 from app.translation import make_lazy_texts, tr, tr_error, tr_phrase, tr_plural
 from app.widgets.choice_row import ChoiceRow
-from app.widgets.quiet_fields import ComboBox
+from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
+from metagraph.graph import edits
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import Mode, Project
-from metagraph.graph.temperaments import TEMPERAMENTS, find_temperament, set_temperament
+from metagraph.graph.temperaments import (
+    TEMPERAMENTS,
+    find_rest_scale,
+    find_temperament,
+    set_rest_scale,
+    set_temperament,
+)
 from metagraph.playback.behaviour import BehaviourCount, describe_lack, measure_behaviour
 from metagraph.playback.planning.markov import DEFAULTS
 
@@ -50,13 +58,14 @@ class BehaviourDialog(QDialog):
         self._counted: Project | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Behaviour"))
-        self.resize(840, 620)
+        self.resize(980, 680)
         self._soon = QTimer(self, singleShot=True, interval=SETTLED)
         self._soon.timeout.connect(self._count)
         box = QVBoxLayout(self)
         box.setContentsMargins(16, 14, 16, 12)
         box.setSpacing(10)
         self._add_choices(box)
+        self._add_dials(box)
         self._add_table(box)
         self.lacks = QLabel(self, wordWrap=True)
         self.lacks.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
@@ -89,6 +98,65 @@ class BehaviourDialog(QDialog):
         self.temperament.activated.connect(self._set_temperament)
         row.addWidget(self.temperament)
         box.addLayout(row)
+
+    def _add_dials(self, box: QVBoxLayout) -> None:
+        """Add the numbers that a temperament sets together, each to be set alone."""
+        row = QHBoxLayout()
+        row.setSpacing(8)
+        self.dials: dict[str, DoubleSpinBox] = {}
+        for name, title, tip, most, step, suffix in (
+            ("rests", tr("Rests"), tr("How long the rests between acts are: 1 is usual"), 5.0, 0.1, " ×"),
+            (
+                "variety",
+                tr("Variety"),
+                tr("How rarely acts and changes of stance are repeated: 1 is usual, 0 repeats at once"),
+                4.0,
+                0.25,
+                " ×",
+            ),
+            ("aversion_rate", tr("Looks away"), tr("How often it looks away"), 40.0, 0.5, tr(" a minute")),
+            ("blinks", tr("Blinks"), tr("How often it blinks by itself"), 60.0, 0.5, tr(" a minute")),
+        ):
+            least = 0.1 if name == "rests" else 0.0
+            number = DoubleSpinBox(self, minimum=least, maximum=most, singleStep=step, decimals=2)
+            number.setSuffix(suffix)
+            number.setToolTip(tip)
+            number.setAccessibleName(title)
+            number.setKeyboardTracking(False)
+            number.valueChanged.connect(lambda value, name=name, title=title: self._turn(name, title, value))
+            label = QLabel(title, self)
+            label.setBuddy(number)
+            row.addWidget(label)
+            row.addWidget(number)
+            row.addSpacing(8)
+            self.dials[name] = number
+        row.addStretch(1)
+        box.addLayout(row)
+
+    def _turn(self, name: str, title: str, value: float) -> None:
+        """Set the number that a dial is of."""
+        words = tr("Change {name}", name=title)
+        if name == "rests":
+            self.document.edit(words, lambda p: set_rest_scale(p, value, DEFAULTS))
+        elif name == "variety":
+            self.document.edit(words, lambda p: edits.set_settings(p, variety=value))
+        else:
+            self.document.edit(words, lambda p: performance_edits.set_life(p, **{name: value}))
+
+    def _show_dials(self) -> None:
+        project = self.document.project
+        rests = find_rest_scale(project, DEFAULTS)
+        self.dials["rests"].setEnabled(rests is not None)
+        values = {
+            "rests": 1.0 if rests is None else rests,
+            "variety": project.settings.variety,
+            "aversion_rate": project.life.aversion_rate,
+            "blinks": project.life.blinks,
+        }
+        for name, value in values.items():
+            self.dials[name].blockSignals(True)
+            self.dials[name].setValue(value)
+            self.dials[name].blockSignals(False)
 
     def _add_table(self, box: QVBoxLayout) -> None:
         self.table = QTableWidget(0, 3, self)
@@ -125,6 +193,7 @@ class BehaviourDialog(QDialog):
     def _edited(self, *_: object) -> None:
         found = find_temperament(self.document.project, DEFAULTS) or OWN
         self.temperament.setCurrentIndex(self.temperament.findData(found))
+        self._show_dials()
         self._soon.start()
 
     def _count(self) -> None:
@@ -158,9 +227,12 @@ class BehaviourDialog(QDialog):
         for n, row in enumerate(found.rows):
             off = row.usual is False
             for column, text in enumerate((row.name, row.amount, row.compared)):
-                item = QTableWidgetItem(tr_phrase(text))
+                shown = tr_phrase(text)
                 if column == 2 and row.source is not None:
-                    item.setToolTip(tr_phrase(row.source))
+                    shown = f"{shown} ({tr_phrase(row.source)})"
+                item = QTableWidgetItem(shown)
+                if column == 2:
+                    item.setToolTip(shown)
                 elif off:
                     item.setToolTip(tr("Outside the range of people, or outside the aim"))
                 if column == 1 and row.usual is not None:

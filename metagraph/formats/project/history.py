@@ -151,7 +151,8 @@ def with_motion(
 
 
 def _source(entry: ClipEntry) -> tuple[Any, ...]:
-    return entry.path, entry.take, entry.as_is, entry.brought_from, entry.retime, entry.in_place
+    stands = (entry.in_place, entry.turned, entry.moved_x, entry.moved_z)
+    return entry.path, entry.take, entry.as_is, entry.brought_from, entry.retime, *stands
 
 
 def _filled(entry: ClipEntry, read: Mapping[tuple[Any, ...], ClipEntry]) -> ClipEntry:

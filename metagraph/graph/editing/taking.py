@@ -320,7 +320,8 @@ class _Clips:
 
 def _content(entry: ClipEntry) -> tuple[object, ...]:
     """Return by what two clips are the same: content, or place if that is not known, and how they play."""
-    return (entry.digest or entry.path, entry.take, entry.as_is, entry.retime, entry.in_place)
+    stands = (entry.in_place, entry.turned, entry.moved_x, entry.moved_z)
+    return (entry.digest or entry.path, entry.take, entry.as_is, entry.retime, *stands)
 
 
 def describe_taking(taking: Taking) -> str:

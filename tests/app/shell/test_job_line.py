@@ -9,7 +9,7 @@ import pytest
 
 from app.project.jobs import Jobs, WindowJob
 from app.shell import job_line
-from app.shell.job_line import JobLine, describe_left
+from app.shell.job_line import JobLine, describe_time_left
 
 
 def test_many_steps_move_the_bar_a_few_times_and_the_last_is_shown(qtbot) -> None:
@@ -63,4 +63,4 @@ def test_it_says_how_long_a_job_will_still_take(qtbot, monkeypatch: pytest.Monke
     jobs.stop()
     assert shown[:3] == ["Counting", "Counting", "Counting: about 30 s left"]
     assert shown[4] == "Counting: about 20 s left"  # of the second part alone
-    assert describe_left(300) == "about 5 min left"
+    assert describe_time_left(300) == "about 5 min left"

@@ -350,6 +350,13 @@ def test_a_blink_shuts_the_lids_in_70_and_opens_them_in_100_milliseconds(sample:
     assert lids(sample, after)[3, 1] == pytest.approx(-15, abs=0.01)
 
 
+def test_an_incomplete_blink_shuts_the_lids_by_three_fifths(sample: Project) -> None:
+    project, times = replace(sample, life=QUIET), 3.0 + np.array([0.0, 0.07, 0.17])
+    found = Schedule(blinks=lane(1).plus([3.0], [(3,)]))
+    after = enliven(resting(project, len(times)), project, found, Track(), times)
+    assert lids(sample, after)[:, 0] == pytest.approx([0, 0.6 * 40, 0], abs=0.01)
+
+
 @pytest.mark.parametrize("squint", [-8.0, 12.0])
 def test_a_blink_shuts_lids_that_a_clip_has_moved_and_no_farther(sample: Project, squint: float) -> None:
     pose = resting(sample, 1)

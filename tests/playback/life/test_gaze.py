@@ -10,7 +10,7 @@ import pytest
 
 from metagraph.graph.life import Life
 from metagraph.graph.model import Project
-from metagraph.playback.life.body import PARTNER_AWAY
+from metagraph.playback.life.body import PARTNER_AWAY, find_body
 from metagraph.playback.life.gaze import (
     ENDING,
     BodyGaze,
@@ -24,6 +24,7 @@ from metagraph.playback.life.lane import lane
 from metagraph.playback.life.schedule import RECALL, Schedule, schedule
 from metagraph.playback.life.track import LookAt, PlaceFrom, Track, track_of
 from metagraph.playback.life.wanted import GazeTarget
+from tests.label_zoo.catalogue import named
 from tests.posing import body_of, gaze_of
 
 STEP = 1 / 240
@@ -81,6 +82,11 @@ def test_the_partner_is_ahead_at_the_height_of_the_eyes(sample: Project) -> None
     body = body_of(sample)
     assert np.allclose(np.array(body.partner) - body.eyes_at_rest, PARTNER_AWAY * np.array(body.ahead))
     assert 1.5 < body.eyes_at_rest[1] < 1.7 and body.ahead == pytest.approx((0, 0, 1), abs=0.05)
+
+
+def test_the_partner_of_a_giant_is_farther_away_than_its_head_sways() -> None:
+    body = find_body(named("a hundred times too large").project)
+    assert np.linalg.norm(np.array(body.partner) - body.eyes_at_rest) > 50.0
 
 
 @pytest.mark.parametrize(("to", "amount"), [("ahead", 0.0), ("nobody", 0.0), ("user", 1.0), ("door", 1.0)])

@@ -311,7 +311,15 @@ def test_the_first_syllable_of_a_speech_brings_a_blink_and_later_ones_only_a_sec
 def test_stressed_words_can_be_left_unblinked() -> None:
     voices = trains(4.0)
     found = schedule(Life(accent_blinks=0), conversation(voices), voices, 1, HOUR, Schedule(), 0.0)
-    assert set(found.blinks.values[:, 0]) == {0.0} and share(found.blinks, 0, HOUR) < 18.5
+    assert set(found.blinks.values[:, 0]) == {0.0, 3.0} and share(found.blinks, 0, HOUR) < 18.5
+
+
+def test_one_in_eight_blinks_by_itself_is_incomplete_and_none_that_is_asked_for() -> None:
+    kinds = drawn(end=HOUR).blinks.values[:, 0]
+    assert set(kinds) == {0.0, 3.0} and 0.09 < (kinds == 3.0).mean() < 0.15
+    asked = track_of([BlinkAt(f"b{n}", 0.7 * n) for n in range(900)])
+    wanted = drawn(asked, HOUR / 4, Life(blinks=0, accent_blinks=0)).blinks.values[:, 0]
+    assert set(wanted) == {2.0}
 
 
 def test_a_blink_asked_for_comes_at_its_time() -> None:

@@ -15,16 +15,21 @@ from metagraph.playback.plan import Cue, MetaRequest
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.director import (
     APART,
+    ENDS_BURST,
     GOES_HOME,
+    LEAST_LULL,
     LONG_REST,
+    MOST_LULL,
     SHORTER,
     STALE,
     STANDS_OUT,
     beat_interval,
+    find_lull,
     freshness,
     posture,
     repeat_interval,
 )
+from metagraph.playback.planning.hashing import Bits
 from metagraph.playback.planning.prominence import measure_prominence
 from metagraph.playback.planning.running_plan import RunningPlan, improvise, plan_performance
 
@@ -224,3 +229,29 @@ def test_while_it_talks_the_arms_go_where_gestures_are_rested(sample: Project) -
     moves = [c for seed in range(4) for c in cues(sample, "arms", "talking", seed) if c.then != c.stance]
     chances = [c for c in moves if any(a.end_stance == rich for a in graph.of(c.stance, "transition"))]
     assert sum(c.then == rich for c in chances) > 0.35 * len(chances), "it has half of all gestures"
+
+
+def test_one_who_talks_ends_a_quarter_of_the_acts_with_a_rest_of_5_to_30_seconds() -> None:
+    lulls = [find_lull(Bits(1), f"auto/arms/{n}", True, 1.0) for n in range(2000)]
+    rests = [x for x in lulls if x > 0]
+    assert len(rests) / len(lulls) == pytest.approx(ENDS_BURST, abs=0.03)
+    assert min(rests) == LEAST_LULL and max(rests) == MOST_LULL
+    assert all(find_lull(Bits(1), f"auto/arms/{n}", False, 1.0) >= LEAST_LULL for n in range(200))
+    assert max(find_lull(Bits(1), f"auto/arms/{n}", False, 4.0) for n in range(200)) == MOST_LULL
+    assert find_lull(Bits(1), "auto/arms/1", False, 0.0) == 0.0
+
+
+@pytest.mark.parametrize("mode", ["listening", "idle"])
+def test_who_does_not_talk_rests_after_each_act_of_the_arms(sample: Project, mode: Any) -> None:
+    found = cues(sample, "arms", mode)
+    assert len(found) > 10
+    assert all(b.start - a.end >= LEAST_LULL for a, b in pairwise(found))
+
+
+def test_who_talks_gestures_in_bursts_and_changes_the_stance_only_after_a_rest(sample: Project) -> None:
+    found = cues(sample, "arms", "talking")
+    rests = [b.start - a.end for a, b in pairwise(found)]
+    assert sum(rest < 3.0 for rest in rests) > 0.2 * len(rests), "within bursts"
+    assert sum(rest >= LEAST_LULL for rest in rests) > 0.35 * len(rests), "between them"
+    moved = [b.start - a.end for a, b in pairwise(found) if b.action.kind == "transition"]
+    assert len(moved) > 5 and min(moved) >= LEAST_LULL

@@ -184,3 +184,20 @@ def test_clasped_hands_do_not_tremble_in_a_bowed_body() -> None:
 
     assert np.percentile(shakes("contacts"), 99) < np.percentile(shakes("life"), 99) + 15.0
     assert shakes("contacts").mean() < 2.0 * shakes("life").mean()
+
+
+def test_a_hand_that_passes_through_a_thigh_does_not_jerk() -> None:
+    """In a body that leans, the hand that pointed at the chest goes back through the thigh."""
+    project = sample()
+    skeleton, body = project.skeleton, project.graphs["body"]
+    assert skeleton is not None
+    leaning = next(i for i, s in body.stances.items() if s.name == "lean forward")
+    points = next(a for a in project.graphs["arms"].actions.values() if a.name == "point_me_rt_01")
+    presses = next(a for a in body.actions.values() if a.name == "press_in_01")
+    asks = [{"do": "action", "action": a.id, "id": a.id, "at": 1.0} for a in (points, presses)]
+    made = plan_performance(
+        project, [make_request(x) for x in asks], 5.0, 1, stances={"body": leaning}, idle=False
+    )
+    times = np.arange(0.5, 4.5, 1 / 60)
+    at = skeleton.globals(Evaluator(made, project).at(times))[1][:, skeleton.index("RightHand")]
+    assert np.linalg.norm(np.diff(at, 2, axis=0), axis=-1).max() * 3600 < 80.0

@@ -1233,7 +1233,9 @@ inline List<Ref<Action>> Performer::_moves_on(const Ref<MetaAction>& meta, doubl
     if (this->graph->layer != "arms" || meta->request->kind != "gesture" || this->track->stays_at("arms", now)) {
         return out;
     }
-    if (now < this->_moved() + director::posture("arms") * this->project->settings->variety) {
+    double variety = this->project->settings->variety;
+    if (now < this->_moved() + director::posture("arms") * variety
+        || now < this->acted + director::LEAST_LULL * variety) {
         return out;
     }
     for (const auto& action : this->graph->of(this->stance, "transition")) {

@@ -856,7 +856,8 @@ export class Performer {
     if (this.graph.layer !== "arms" || meta.request.kind !== "gesture" || this.track.staysAt("arms", now)) {
       return out;
     }
-    if (now < this.moved() + posture("arms") * this.project.settings.variety) {
+    const variety = this.project.settings.variety;
+    if (now < this.moved() + posture("arms") * variety || now < this.acted + LEAST_LULL * variety) {
       return out;
     }
     for (const action of this.graph.of(this.stance, "transition")) {

@@ -6,6 +6,8 @@ import pytest
 
 from app.features.behaviour.behaviour_dialog import OWN, BehaviourDialog
 from metagraph.graph import edits
+from metagraph.graph.temperaments import find_rest_scale
+from metagraph.playback.planning.markov import DEFAULTS
 
 
 def shown(dialog):
@@ -58,3 +60,23 @@ def test_it_shows_the_mode_that_plays_wherever_that_was_chosen(toys):
     assert dialog.modes.group.checkedId() == 2 and shown(dialog)[0][1] == "0.0 a minute"
     toys.session.onstage.improvise("talking")
     assert dialog.modes.group.checkedId() == 0 and shown(dialog)[0][1] != "0.0 a minute"
+
+
+def test_each_dial_sets_one_number_and_is_a_step_to_undo(toys):
+    dialog = opened(toys)
+    before = toys.document.project
+    for name, value in (("rests", 1.5), ("variety", 2.0), ("aversion_rate", 20.0), ("blinks", 9.0)):
+        dialog.dials[name].setValue(value)
+    project = toys.document.project
+    assert project.settings.variety == 2.0 and find_rest_scale(project, DEFAULTS) == 1.5
+    assert (project.life.aversion_rate, project.life.blinks) == (20.0, 9.0)
+    assert dialog.temperament.currentData() == OWN
+    for _ in range(4):
+        toys.document.undo()
+    assert toys.document.project == before and dialog.dials["blinks"].value() == before.life.blinks
+
+
+def test_the_source_of_a_figure_for_people_stands_beside_it(toys):
+    dialog = opened(toys)
+    blinks = next(row for row in shown(dialog) if row[0] == "Blinks")
+    assert blinks[2].startswith("people: ") and "Bentivoglio" in blinks[2]

@@ -1049,7 +1049,8 @@ namespace Metagraph
             {
                 return out_;
             }
-            if (now < Moved() + DirectorRules.Posture("arms") * Project.Settings.Variety)
+            var variety = Project.Settings.Variety;
+            if (now < Moved() + DirectorRules.Posture("arms") * variety || now < Acted + DirectorRules.LeastLull * variety)
             {
                 return out_;
             }

@@ -790,7 +790,8 @@ class Performer:
 		var out = []
 		if self.graph.layer != "arms" or meta.request.kind != "gesture" or self.track.stays_at("arms", now):
 			return out
-		if now < self._moved() + Director.posture("arms") * self.project.settings.variety:
+		var variety = self.project.settings.variety
+		if now < self._moved() + Director.posture("arms") * variety or now < self.acted + Director.LEAST_LULL * variety:
 			return out
 		for action in self.graph.of(self.stance, "transition"):
 			if self._usable(action) and self._count_fresh(action.end_stance, now) > 0:
