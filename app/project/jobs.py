@@ -16,6 +16,10 @@ from app import faults
 WORDS = (OSError, MemoryError, ValueError, RuntimeError)  # their message is shown, besides our own errors
 
 
+class JobCancelledError(Exception):
+    """The work of a job ends here, because the job was cancelled."""
+
+
 class WindowJob(QObject):
     """A running job. `done` carries its result, `failed` the exception, `progress` (done, total, words).
 
@@ -71,6 +75,14 @@ class WindowJob(QObject):
     def tell(self, done: int, total: int, words: str = "") -> None:
         """Report progress; called by the work, on its own thread."""
         self.progress.emit(done, total, words)
+
+    def go_on(self, done: int, total: int, words: str = "") -> None:
+        """Report progress as `tell` does, from where the work can end without leaving anything half done.
+        Raises JobCancelledError if it was cancelled.
+        """
+        if self.cancelled:
+            raise JobCancelledError
+        self.tell(done, total, words)
 
 
 def _nothing(job: WindowJob) -> None:

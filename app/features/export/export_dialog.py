@@ -343,7 +343,7 @@ class ExportDialog(QDialog):
 
         def work(job: WindowJob) -> TargetReport:
             contents = Contents(character, expanded, base, is_chosen, compress)
-            made = registry.write_for_target(project, name, folder, contents, job.tell, overwrite)
+            made = registry.write_for_target(project, name, folder, contents, job.go_on, overwrite)
             if vectors:
                 write_vectors(next(path for path in made.files if path.suffix == ".json"))
             if tools:
@@ -357,14 +357,17 @@ class ExportDialog(QDialog):
             tr("Exporting"), work, lambda made: self._done(made, folder), failed, stands=True
         )
         job.progress.connect(self._tell)
+        job.ended.connect(self._ended)
+
+    def _ended(self) -> None:
+        self.progress.hide()
+        self.go.setEnabled(True)
 
     def _tell(self, done: int, total: int, words: str) -> None:
         self.progress.setRange(0, total)
         self.progress.setValue(done)
 
     def _done(self, made: TargetReport, folder: Path) -> None:
-        self.progress.hide()
-        self.go.setEnabled(True)
         main = [path.name for path in sorted(made.files, key=lambda path: -path.stat().st_size)[:3]]
         names = ", ".join(main)
         if more := len(made.files) - len(main):
@@ -388,8 +391,6 @@ class ExportDialog(QDialog):
         self.document.exported.emit()
 
     def _failed(self, target: str, error: Exception) -> None:
-        self.progress.hide()
-        self.go.setEnabled(True)
         if isinstance(error, ForeignFilesError) and self.target.name == target:
             self._ask_overwrite(error)
         else:

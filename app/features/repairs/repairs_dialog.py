@@ -154,7 +154,7 @@ class RepairsDialog(QDialog):
         self.trouble.hide()
 
         def work(job: WindowJob) -> Reread:
-            return reread(project, folder, changes, job.tell)
+            return reread(project, folder, changes, job.go_on)
 
         document, failures = self.document, list[str]()
 
