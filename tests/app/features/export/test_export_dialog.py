@@ -242,3 +242,26 @@ def test_every_target_is_written_by_a_click(toys, tmp_path):
     drive.document.exported.disconnect(told)
     assert refused.keys() == {"vrm"} and "choose a mesh" in refused["vrm"]
     assert written == list(dialog.results)
+
+
+def test_an_export_that_is_cancelled_writes_nothing_and_can_be_begun_again(toys, tmp_path, monkeypatch):
+    drive = toys
+    dialog = opened(drive)
+    pick(drive, dialog, "xstate")
+    put(dialog, str(tmp_path / "chart"))
+    write = registry.write_for_target
+
+    def cancelled(*given):
+        drive.session.jobs.running[-1].cancel()
+        return write(*given)
+
+    monkeypatch.setattr(registry, "write_for_target", cancelled)
+    QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: dialog.go.isEnabled(), 60)
+    assert not (tmp_path / "chart").exists() and not dialog.open_button.isEnabled()
+    assert dialog.progress.isHidden() and not dialog.trouble.text()
+    monkeypatch.setattr(registry, "write_for_target", write)
+    QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: dialog.open_button.isEnabled(), 60)
+    assert list((tmp_path / "chart").glob("*.json"))
+    dialog.reject()
