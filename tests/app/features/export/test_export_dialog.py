@@ -252,7 +252,7 @@ def test_an_export_that_is_cancelled_writes_nothing_and_can_be_begun_again(toys,
     write = registry.write_for_target
 
     def cancelled(*given):
-        drive.session.jobs.running[-1].cancel()
+        dialog.jobs.running[-1].cancel()
         return write(*given)
 
     monkeypatch.setattr(registry, "write_for_target", cancelled)
