@@ -94,5 +94,5 @@ class ProblemButton(QToolButton):
             if hints
             else tr("No problems")
         )
-        self.setIcon(icons.make_icon("warning" if problems else "done", color))
+        self.setIcon(icons.make_icon("warning" if grave else "done", color))
         set_sheet(self, f"color: {color}")
