@@ -165,6 +165,8 @@ class PropertiesPanel(QScrollArea):
             self._fetch((PLOTS,), self._fetched)
             return
         self._turn_to(1 if actions else 2 if clips else 0)
+        if self._action is not None and not actions:
+            self._action.set_first_low(False)
         if actions:
             self.action.show_actions(actions)
             self._bound()
