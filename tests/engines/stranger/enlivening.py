@@ -230,8 +230,11 @@ class Life:
     def blink(self, t: float) -> float:
         """ "Lids"."""
         close, opening = self.dials["blink_close"], self.dials["blink_open"]
-        gone = [t - start for start, _ in self.events["blinks"] if 0.0 <= t - start < close + opening]
-        return max((ease(min(x / close, (close + opening - x) / opening)) for x in gone), default=0.0)
+        blinks = [(t - start, 0.6 if kind == 3.0 else 1.0) for start, kind in self.events["blinks"]]
+        gone = [(x, far) for x, far in blinks if 0.0 <= x < close + opening]
+        return max(
+            (far * ease(min(x / close, (close + opening - x) / opening)) for x, far in gone), default=0.0
+        )
 
     def lips(self, t: float, said: list[tuple[float, float, str]]) -> Numbers:
         """How much of each of SHAPES the mouth shows; said: start, end, line; "Lips"."""

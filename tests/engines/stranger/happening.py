@@ -318,7 +318,8 @@ class Happening:
             at = min(own, heard, wish)
             if at >= self.drawn:
                 return out
-            out.append([at, 2.0 if at == wish else 1.0 if at == heard else 0.0])
+            alone = 3.0 if self.u("blink", n, "half") < 0.12 else 0.0
+            out.append([at, 2.0 if at == wish else 1.0 if at == heard else alone])
             last = at
 
     def swells(self) -> list[list[float]]:

@@ -287,6 +287,18 @@ class Sampler:
         b = min(180.0, max(18.0, 7.0 * gestures)) if self.layer == "arms" else 18.0
         return float(variety * (b * (360.0 / b) ** p if action["kind"] == "gesture" else 300.0 * 2.0**p))
 
+    def acted(self) -> float:
+        return float(self.cues[-1]["end"]) if self.cues else 0.0
+
+    def rests(self, now: float) -> bool:
+        """ "Bursts and rests"; nobody said a mode, so there are rests alone."""
+        variety = self.planner["variety"]
+        if self.layer != "arms" or variety <= 0.0 or not self.cues:
+            return False
+        seed, key = self.seed, self.cues[-1]["meta"]
+        drawn = log_normal(8.0, 14.0, uniform(seed, key, "lull"), uniform(seed, key, "lull2"))
+        return now < self.acted() + min(30.0, max(5.0, drawn) * variety)
+
     def rested(self, meta: Meta, every: list[dict[str, Any]], now: float) -> list[dict[str, Any]]:
         """ "Variety": what the model may do; nobody said a mode, so it idles."""
         variety = self.planner["variety"]
@@ -294,8 +306,10 @@ class Sampler:
             moves = [c["end"] for c in self.cues if self.actions[c["action"]]["kind"] == "transition"]
             if (
                 now
-                < max(moves, default=-inf) + variety * {"body": 15.0, "arms": 10.0, "head": 8.0}[self.layer]
+                < max(moves, default=-inf) + variety * {"body": 25.0, "arms": 10.0, "head": 8.0}[self.layer]
             ):
+                return []
+            if self.layer == "arms" and now < self.acted() + 5.0 * variety:
                 return []
             if self.layer != "head":
                 return every
@@ -304,7 +318,7 @@ class Sampler:
                 return every if uniform(self.seed, meta.key, "leaves") < 0.2 else []
             home = [a for a in every if a["end_stance"] == start]
             return home if home and uniform(self.seed, meta.key, "home") < 0.7 else every
-        long = now >= (self.cues[-1]["end"] if self.cues else 0.0) + 30.0 * variety
+        long = now >= self.acted() + 30.0 * variety
         acts = [c for c in self.cues if self.actions[c["action"]]["kind"] != "transition"]
         shown = any(
             c["end"] >= now - 30.0 * variety and self.actions[c["action"]].get("prominence", 0.0) >= 0.65
@@ -321,6 +335,7 @@ class Sampler:
         """ "Variety": what plays for a gesture if none is rested."""
         moves = [c["end"] for c in self.cues if self.actions[c["action"]]["kind"] == "transition"]
         kept = now < max(moves, default=-inf) + 10.0 * self.planner["variety"]
+        kept = kept or now < self.acted() + 5.0 * self.planner["variety"]
         if self.layer != "arms" or meta.kind != "gesture" or kept:
             return []
 
@@ -368,6 +383,8 @@ class Sampler:
             if meta.end <= free + NEAR and meta.start < free and late:
                 continue
             now = max(free, meta.start)
+            if meta.rank == WRITTEN and self.rests(now):
+                continue
             steps = self.steps(meta, now)
             cues = self.realised(meta, steps, now, limit, wish) if steps else []
             self.cues += cues
