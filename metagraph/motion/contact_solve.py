@@ -32,7 +32,8 @@ FOLDED = 0.906  # cosine of the least angle inside an elbow, 25 degrees
 WRIST = 0.819  # cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 SOFT = 0.006  # metres of depth over which the push out of the body sets in
 FIRM = 0.03  # metres of depth from which on a part resists what pushes towards it
-THROUGH = 0.2  # of both radii: who is nearer to the other's line passes through it
+THROUGH = 0.25  # of both radii: who is nearer to the other's line passes through it
+FULL = 0.9  # from here on, it is pushed all the way
 EVEN = 0.05  # how much the middle counts where lines are side by side
 STRAIGHT = (0.31, 0.52, 0.8)  # where a straight arm bends to: no side in particular, but always one
 ELBOW = 0.3  # how little a forearm is pushed near its elbow, which a wrist cannot move
@@ -349,8 +350,8 @@ def _shift(
                 continue
             depth = radii - gap
             amount = depth - 0.5 * SOFT if depth > SOFT else depth * depth / (2.0 * SOFT)
-            # Nearer to the line it is not pushed all the way, and about it not at all.
-            inner = min(1.0, max(0.0, (gap / radii - THROUGH) / (1.0 - THROUGH)))
+            # Near to the line it is not pushed all the way, and about it not at all.
+            inner = min(1.0, max(0.0, (gap / radii - THROUGH) / (FULL - THROUGH)))
             inner = inner * inner * (3.0 - 2.0 * inner)
             if first:
                 whole[side] = min(whole[side], 1.0 - share * (1.0 - inner))

@@ -26,7 +26,8 @@ inline constexpr double FOLDED = 0.906; // cosine of the least angle inside an e
 inline constexpr double WRIST = 0.819;
 inline constexpr double SOFT = 0.006; // metres of depth over which the push out of the body sets in
 inline constexpr double FIRM = 0.03; // metres of depth from which on a part resists what pushes towards it
-inline constexpr double THROUGH = 0.2; // of both radii: who is nearer to the other's line passes through it
+inline constexpr double THROUGH = 0.25; // of both radii: who is nearer to the other's line passes through it
+inline constexpr double FULL = 0.9; // from here on, it is pushed all the way
 inline constexpr double EVEN = 0.05; // how much the middle counts where lines are side by side
 // where a straight arm bends to: no side in particular, but always one
 inline const std::tuple<double, double, double> STRAIGHT = std::tuple<double, double, double>{0.31, 0.52, 0.8};
@@ -620,10 +621,10 @@ inline std::tuple<double, double, double> _shift(
             double amount = depth > contact_solve::SOFT
                 ? depth - 0.5 * contact_solve::SOFT
                 : depth * depth / (2.0 * contact_solve::SOFT);
-            // Nearer to the line it is not pushed all the way, and about it not at all.
+            // Near to the line it is not pushed all the way, and about it not at all.
             double inner = std::min(
                 1.0,
-                std::max(0.0, (gap / radii - contact_solve::THROUGH) / (1.0 - contact_solve::THROUGH))
+                std::max(0.0, (gap / radii - contact_solve::THROUGH) / (contact_solve::FULL - contact_solve::THROUGH))
             );
             inner = inner * inner * (3.0 - 2.0 * inner);
             if (first) {

@@ -15,7 +15,8 @@ export const FOLDED = 0.906; // cosine of the least angle inside an elbow, 25 de
 export const WRIST = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 export const SOFT = 0.006; // metres of depth over which the push out of the body sets in
 export const FIRM = 0.03; // metres of depth from which on a part resists what pushes towards it
-export const THROUGH = 0.2; // of both radii: who is nearer to the other's line passes through it
+export const THROUGH = 0.25; // of both radii: who is nearer to the other's line passes through it
+export const FULL = 0.9; // from here on, it is pushed all the way
 export const EVEN = 0.05; // how much the middle counts where lines are side by side
 export const STRAIGHT = [0.31, 0.52, 0.8]; // where a straight arm bends to: no side in particular, but always one
 export const ELBOW = 0.3; // how little a forearm is pushed near its elbow, which a wrist cannot move
@@ -471,8 +472,8 @@ function _shift(rig, ends, balls, side, held, across, whole, first) {
       }
       const depth = radii - gap;
       let amount = depth > SOFT ? depth - 0.5 * SOFT : depth * depth / (2 * SOFT);
-      // Nearer to the line it is not pushed all the way, and about it not at all.
-      let inner = Math.min(1, Math.max(0, (gap / radii - THROUGH) / (1 - THROUGH)));
+      // Near to the line it is not pushed all the way, and about it not at all.
+      let inner = Math.min(1, Math.max(0, (gap / radii - THROUGH) / (FULL - THROUGH)));
       inner = inner * inner * (3 - 2 * inner);
       if (first) {
         whole[side] = Math.min(whole[side], 1 - share * (1 - inner));

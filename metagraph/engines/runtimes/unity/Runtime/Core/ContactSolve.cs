@@ -148,7 +148,8 @@ namespace Metagraph
         public const double Wrist = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
         public const double Soft = 0.006; // metres of depth over which the push out of the body sets in
         public const double Firm = 0.03; // metres of depth from which on a part resists what pushes towards it
-        public const double Through = 0.2; // of both radii: who is nearer to the other's line passes through it
+        public const double Through = 0.25; // of both radii: who is nearer to the other's line passes through it
+        public const double Full = 0.9; // from here on, it is pushed all the way
         public const double Even = 0.05; // how much the middle counts where lines are side by side
         // where a straight arm bends to: no side in particular, but always one
         public static readonly (double, double, double) Straight = (0.31, 0.52, 0.8);
@@ -617,8 +618,8 @@ namespace Metagraph
                     }
                     var depth = radii - gap;
                     var amount = depth > Soft ? depth - 0.5 * Soft : depth * depth / (2.0 * Soft);
-                    // Nearer to the line it is not pushed all the way, and about it not at all.
-                    var inner = Math.Min(1.0, Math.Max(0.0, (gap / radii - Through) / (1.0 - Through)));
+                    // Near to the line it is not pushed all the way, and about it not at all.
+                    var inner = Math.Min(1.0, Math.Max(0.0, (gap / radii - Through) / (Full - Through)));
                     inner = inner * inner * (3.0 - 2.0 * inner);
                     if (first)
                     {
