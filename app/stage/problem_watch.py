@@ -130,11 +130,14 @@ class ProblemWatch(QObject):
 
 
 def _subject(project: Project, problem: Problem) -> tuple[object, ...]:
-    """Return what a problem is about: the action and its clip, else the stance, else the project's graphs."""
+    """Return what a problem is about: the action and its clip, else the stance, else the project's graphs; of
+    arms inside the body also what the project says of hands.
+    """
     action = project.action(problem.action or "")
+    touch = (project.touch,) if problem.code == "play-arm-inside" else ()
     if action is not None:
-        return action, project.clips.get(action.clip)
-    return (project.stance(problem.stance) or project.graphs,)
+        return action, project.clips.get(action.clip), *touch
+    return project.stance(problem.stance) or project.graphs, *touch
 
 
 def _same(one: tuple[object, ...], other: tuple[object, ...]) -> bool:

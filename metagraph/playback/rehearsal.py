@@ -442,11 +442,14 @@ class _Findings:
         if over.sum() < LONG * RATE:
             return
         frame = int(np.argmax(self.seen.inside))
+        deep, share = 100 * float(self.seen.inside[frame]), 100 * float(over.mean())
         words = phrase(
             "an arm is {length:.0f} cm inside the body; arms are inside it for {share:.0f} % of the time",
-            length=100 * float(self.seen.inside[frame]),
-            share=100 * float(over.mean()),
+            length=deep,
+            share=share,
         )
+        if share < 0.5:
+            words = phrase("an arm is {length:.0f} cm inside the body for a moment", length=deep)
         remedy = phrase(
             "Turn on the guard that keeps hands out of the body (metagraph contacts --guard on), or skip "
             "the gesture in this stance."

@@ -10,6 +10,7 @@ from PySide6.QtGui import (
     QImage,
     QImageReader,
     QPalette,
+    QTextBlock,
     QTextBlockFormat,
     QTextCharFormat,
     QTextCursor,
@@ -77,6 +78,7 @@ class ManualBrowser(QTextBrowser):
         block = self.document().begin()
         while block.isValid():
             self._dress_block(QTextCursor(block))
+            self._underline_links(block)
             block = block.next()
         for table in root.childFrames():
             if isinstance(table, QTextTable):
@@ -102,6 +104,21 @@ class ManualBrowser(QTextBrowser):
             form.setBottomMargin(4 if cursor.currentList() else 10)
             form.setLineHeight(128, QTextBlockFormat.LineHeightTypes.ProportionalHeight.value)
         cursor.mergeBlockFormat(form)
+
+    def _underline_links(self, block: QTextBlock) -> None:
+        """Underline links: they have the colour of other text, since colour means kind."""
+        links, place = [], block.begin()
+        while not place.atEnd():
+            part = place.fragment()
+            if part.charFormat().isAnchor():
+                links.append((part.position(), part.position() + part.length()))
+            place += 1
+        line, cursor = QTextCharFormat(), QTextCursor(block)
+        line.setFontUnderline(True)
+        for first, last in links:
+            cursor.setPosition(first)
+            cursor.setPosition(last, QTextCursor.MoveMode.KeepAnchor)
+            cursor.mergeCharFormat(line)
 
     def _dress_table(self, table: QTextTable) -> None:
         form, head = table.format(), QTextCharFormat()

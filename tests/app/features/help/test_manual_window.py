@@ -58,6 +58,21 @@ def test_f1_opens_the_page_of_the_panel_that_has_the_keyboard(toys):
     assert len(toys.window.findChildren(ManualWindow)) == 1
 
 
+def test_links_are_underlined_and_other_words_are_not(toys):
+    manual = read(toys, "start/ten-minutes.md")
+    lined = set()
+    block = manual.browser.document().begin()
+    while block.isValid():
+        place = block.begin()
+        while not place.atEnd():
+            form = place.fragment().charFormat()
+            lined.add((form.isAnchor(), form.fontUnderline()))
+            place += 1
+        block = block.next()
+    assert lined == {(True, True), (False, False)}
+    manual.close()
+
+
 @pytest.mark.nightly
 def test_links_lead_on_and_keys_lead_back(toys):
     manual = read(toys, "index.md")

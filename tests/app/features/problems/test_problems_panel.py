@@ -8,6 +8,7 @@ from collections import Counter
 from dataclasses import replace
 from functools import partial
 
+import msgspec
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
@@ -336,3 +337,21 @@ def test_play_and_check_lists_what_is_seen_and_a_click_opens_that_moment(toys, t
         drive.wait(lambda: "play-in-air" not in {p.code for p in panel.problems})
         drive.document.undo()
         drive.wait(lambda: "play-in-air" in {p.code for p in panel.problems})
+
+
+@pytest.mark.window
+def test_an_arm_inside_the_body_is_over_once_hands_are_kept_out(toys, toy, monkeypatch):
+    from app.stage import problem_watch
+
+    action = toy.id(toys.document.project, "rest wave rt")
+    inside = Problem("warning", "play-arm-inside", "an arm is inside", "keep it out", "arms", action=action)
+    monkeypatch.setattr(problem_watch, "rehearse", lambda *given, **more: [inside])
+    toys.problems.play()
+    toys.wait(lambda: inside in toys.problems.problems)
+    was = toys.document.project.touch
+    touch = msgspec.structs.replace(was, guard=not was.guard)
+    toys.document.edit("Keep hands out", lambda p: replace(p, touch=touch))
+    toys.wait(lambda: inside not in toys.problems.problems)
+    monkeypatch.setattr(problem_watch, "rehearse", lambda *given, **more: [])
+    toys.problems.play()
+    toys.wait(lambda: not toys.problems.is_playing)
