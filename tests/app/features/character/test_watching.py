@@ -168,6 +168,7 @@ def test_the_stance_stands_as_a_ghost_where_the_character_has_left_it(shown):
     assert len(panel.scene().actors) == 2, "of a clip alone, too"
 
 
+@pytest.mark.nightly
 def test_onion_skin_shows_moments_before_and_after_as_many_and_as_far_as_asked(shown):
     panel, session = shown.preview, shown.session
     session.transport.set_playing(False)

@@ -140,6 +140,7 @@ def task(study: Study) -> str:
     return study.plan.tasks[0].id
 
 
+@pytest.mark.nightly
 @needs_godot4
 def test_the_script_for_godot_logs_a_session_in_godot_4(
     study: Study, tmp_path: Path, browse: Browser, capsys: pytest.CaptureFixture[str]
@@ -204,6 +205,7 @@ def test_the_script_for_unity_logs_a_session_with_classes_that_stand_in(
     assert run["edits"] == 5 and run["seconds"] > 1
 
 
+@pytest.mark.nightly
 def test_the_script_for_unreal_logs_a_session_with_a_module_that_stands_in(
     study: Study, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
