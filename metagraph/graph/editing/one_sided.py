@@ -62,7 +62,7 @@ def describe_one_sided(one: OneSided) -> Phrase:
 
 def check_limbs(project: Project) -> list[Problem]:
     """Return a hint for each stance of the arms in which only one arm has gestures or fidgets."""
-    remedy = phrase("Make mirrored twins: then what asks for the other arm is met.")
+    remedy = phrase("Make mirrored twins, so that requests for the other arm are met, too.")
     return [
         Problem("hint", "one-arm", describe_one_sided(one), remedy, "arms", one.stance)
         for one in list_one_sided(project)
