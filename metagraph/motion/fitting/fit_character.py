@@ -33,7 +33,7 @@ def fit_character(body: CharacterMesh, skeleton: Skeleton, footing: Footing | No
     made = make_sculpture(body)
     bind = bind_pose(skeleton, made.at, footing)
     if isinstance(bind, str):
-        raise ValueError(f"cannot be fitted: {bind}")
+        raise ValueError(f"cannot be fitted ({bind})")
     fit = Fit(skeleton, bind, made, None if footing is None else footing.ankle)
     carriers, weights = fit.slots()
     joints, shares = _strongest(np.array(carriers), weights)
@@ -52,6 +52,24 @@ def fit_character(body: CharacterMesh, skeleton: Skeleton, footing: Footing | No
     )
 
 
+def explain_no_fit(body: CharacterMesh, skeleton: Skeleton | None) -> str | None:
+    """Return why a character cannot be drawn on a skeleton (its own, if none is given) whatever its clips
+    are, in words that follow "its mesh"; None if it can.
+    """
+    why = explain_no_character(body)
+    if why is not None or skeleton is None:
+        return why
+    named = explain_no_character(body, skeleton)
+    if named is None:
+        return None
+    try:
+        make_sculpture(body)
+    except ValueError:
+        return named
+    known = find_known_roles(skeleton, None)
+    return None if all(role in known for role in NEEDED) else named
+
+
 def put_on_skeleton(
     body: CharacterMesh, skeleton: Skeleton | None, footing: Footing | None = None
 ) -> tuple[CharacterMesh, str | None]:
@@ -67,7 +85,7 @@ def put_on_skeleton(
     try:
         return fit_character(body, skeleton, footing), None
     except ValueError as reason:
-        return body, why and str(reason)
+        return body, why and f"{why} and {reason}"
 
 
 def is_named_alike(body: CharacterMesh, skeleton: Skeleton) -> bool:
