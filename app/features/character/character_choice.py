@@ -37,7 +37,7 @@ def list_recent() -> list[Path]:
     return [Path(name) for name in names if isinstance(name, str) and Path(name).is_file()]
 
 
-def remember(path: Path) -> None:
+def remember_character(path: Path) -> None:
     """Put a file first among those that were chosen lately."""
     rest = [other for other in list_recent() if other != path]
     QSettings().setValue(RECENT, [str(one) for one in [path, *rest][:MOST]])

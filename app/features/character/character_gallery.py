@@ -23,7 +23,7 @@ from app.features.character.character_choice import (
     ask_character_file,
     draw_default_body,
     list_recent,
-    remember,
+    remember_character,
     take_character,
 )
 from app.features.character.character_portraits import Portrait, draw_portraits, find_still
@@ -37,7 +37,7 @@ ROLE = Qt.ItemDataRole.UserRole
 
 
 @dataclass(frozen=True)
-class Choice:
+class CharacterCard:
     """A character that can be chosen. file: None for the default body. note: what else to say of it. refused:
     why it cannot be drawn.
     """
@@ -95,17 +95,17 @@ class CharacterGallery(QDialog):
 
     def _fill(self) -> None:
         current = self._current()
-        ours = [Choice(name, file) for name, file in OURS.items() if file.is_file()]
+        ours = [CharacterCard(name, file) for name, file in OURS.items() if file.is_file()]
         choices = [
             *ours,
-            Choice(tr("Default body"), None, tr("A mannequin in the measures of your skeleton.")),
+            CharacterCard(tr("Default body"), None, tr("A mannequin in the measures of your skeleton.")),
         ]
         known = [file.resolve() for file in OURS.values()]
         own = [current] if current is not None and current.is_file() else []
         for file in [*own, *list_recent()]:
             if file.resolve() not in known:
                 known.append(file.resolve())
-                choices.append(Choice(file.stem, file, str(file)))
+                choices.append(CharacterCard(file.stem, file, str(file)))
         for choice in choices:
             self._add(choice)
             same = choice.file == current or (
@@ -117,7 +117,7 @@ class CharacterGallery(QDialog):
             self.list.setCurrentRow(0)
         self._look([self.list.item(n) for n in range(self.list.count())])
 
-    def _add(self, choice: Choice) -> QListWidgetItem:
+    def _add(self, choice: CharacterCard) -> QListWidgetItem:
         empty = QPixmap(SIDE, SIDE)
         empty.fill(Qt.GlobalColor.transparent)
         item = QListWidgetItem(QIcon(empty), choice.name, self.list)
@@ -159,7 +159,7 @@ class CharacterGallery(QDialog):
         if portrait.refused:
             item.setForeground(self.palette().placeholderText())
 
-    def _chosen(self) -> Choice | None:
+    def _chosen(self) -> CharacterCard | None:
         items = self.list.selectedItems()
         return items[0].data(ROLE) if items else None
 
@@ -174,7 +174,7 @@ class CharacterGallery(QDialog):
         path = ask_character_file(self, self.document.folder)
         if path is None:
             return
-        item = self._add(Choice(path.stem, path, str(path)))
+        item = self._add(CharacterCard(path.stem, path, str(path)))
         self.list.setCurrentItem(item)
         self._look([item])
 
@@ -187,6 +187,6 @@ class CharacterGallery(QDialog):
             draw_default_body(self.shell)
             return
         if choice.file not in OURS.values():
-            remember(choice.file)
+            remember_character(choice.file)
         if choice.file != self._current():
             take_character(self.shell, choice.file)

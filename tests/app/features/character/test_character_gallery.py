@@ -9,7 +9,7 @@ from PySide6.QtCore import QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 
-from app.features.character.character_choice import MOST, OURS, list_recent, remember
+from app.features.character.character_choice import MOST, OURS, list_recent, remember_character
 from app.features.character.character_gallery import CharacterGallery
 from preview.default_body.figure import DefaultBody
 from preview.figure import SkinnedFigure
@@ -90,9 +90,9 @@ def test_files_chosen_lately_are_listed_until_they_are_gone(qapp, tmp_path):
     files = [tmp_path / f"{n}.glb" for n in range(MOST + 2)]
     for file in files:
         file.write_bytes(b"")
-        remember(file)
+        remember_character(file)
     assert list_recent() == files[:1:-1]
-    remember(files[3])
+    remember_character(files[3])
     assert list_recent()[0] == files[3] and len(list_recent()) == MOST
     files[3].unlink()
     assert files[3] not in list_recent()
