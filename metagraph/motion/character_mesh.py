@@ -16,7 +16,6 @@ Array = NDArray[Any]
 
 FEWEST = 12  # triangles of a character's mesh: exporters put one or two into a file that has to have a mesh
 SMALL = 0.2  # of the skeleton's height: below that a mesh must be where the joints are
-FOLDED = 0.05  # volume that skinning leaves of one, below which a surface has no way back
 INSIDE = 0.25  # share of the joints that are within a small mesh that is a part of a body
 
 
@@ -161,26 +160,19 @@ def find_followers(own: Skeleton, skeleton: Skeleton) -> tuple[Array, Array]:
 
 def bind_character(body: CharacterMesh, skeleton: Skeleton) -> CharacterMesh:
     """Return a character on a skeleton that is not its own, its joints matched by name as `find_followers`
-    says, and its surface so that the skeleton in the character's own rest pose moves it to where it was made:
-    rest poses may be far from standing, and what skinning does to a surface there is not undone by standing
-    up. Raises ValueError if no joint matches.
+    says, and its surface as that skeleton's rest pose moves it. Raises ValueError if no joint matches.
     """
     follow, places = find_followers(body.skeleton, skeleton)
     if places.min() < 0:
         raise ValueError(f"character '{body.name}' has no joint of the skeleton")
     own_r, own_p = body.skeleton.globals(body.skeleton.rest)
     rest_r, rest_p = skeleton.globals(skeleton.rest)
-    turns = rotation.multiply(own_r[follow], rotation.conjugate(rest_r[places]))
-    shifts = own_p[follow] - rotation.rotate_vectors(turns, rest_p[places])
+    turns = rotation.multiply(rest_r[places], rotation.conjugate(own_r[follow]))
+    shifts = rest_p[places] - rotation.rotate_vectors(turns, own_p[follow])
     weights = body.weights[..., None].astype(float)
-    back = (weights[..., None] * rotation.to_matrix(turns)[body.joints]).sum(1)
-    whole = np.linalg.det(back) > FOLDED
-    # Where joints are turned against each other by half a turn, nothing leads back.
-    main = rotation.to_matrix(turns)[body.joints[np.arange(len(back)), body.weights.argmax(1)]]
-    back = np.where(whole[:, None, None], back, main)
-    matrix = np.linalg.inv(back)
-    moved = np.einsum("vij,vj->vi", matrix, body.positions - (weights * shifts[body.joints]).sum(1))
-    normals = np.einsum("vji,vj->vi", back, body.normals)
+    matrix = (weights[..., None] * rotation.to_matrix(turns)[body.joints]).sum(1)
+    moved = np.einsum("vij,vj->vi", matrix, body.positions) + (weights * shifts[body.joints]).sum(1)
+    normals = np.einsum("vij,vj->vi", matrix, body.normals)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     morphs = body.morph_positions
     joints, shares = _merged(places[body.joints], body.weights)
@@ -193,6 +185,14 @@ def bind_character(body: CharacterMesh, skeleton: Skeleton) -> CharacterMesh:
         weights=shares,
         morph_positions=None if morphs is None else np.einsum("vij,kvj->kvi", matrix, morphs),
         surfaces=tuple(replace(s, held=int(places[s.held]) if s.held >= 0 else -1) for s in body.surfaces),
+    )
+
+
+def is_bound_to(body: CharacterMesh, skeleton: Skeleton) -> bool:
+    """Return whether a character's joints are a skeleton's, at rest in whatever pose."""
+    own = body.skeleton
+    return own is skeleton or (
+        own.names == skeleton.names and bool(np.array_equal(own.parents, skeleton.parents))
     )
 
 
