@@ -91,6 +91,6 @@ def rare(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def game(tmp_path: Path) -> Path:
     """A Godot project with the addon."""
     folder = tmp_path / "game"
-    shutil.copytree(godot_runtime.ADDON, folder / "addons")
+    godot_runtime.install_addon(folder)
     (folder / "project.godot").write_text('config_version=4\n\n[application]\n\nconfig/name="test"\n')
     return folder

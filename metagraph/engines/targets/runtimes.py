@@ -9,6 +9,7 @@ from pathlib import Path
 
 from metagraph import engines
 from metagraph.common.wording import phrase
+from metagraph.engines.engine_machine import list_machines
 from metagraph.engines.export import (
     AIFF,
     OGG_AND_MP3,
@@ -18,10 +19,18 @@ from metagraph.engines.export import (
     write_indented_export,
     write_project_files,
 )
-from metagraph.engines.targets.godot_scene import MOTION, write_godot_scene
+from metagraph.engines.targets.godot_library import write_animation_library
+from metagraph.engines.targets.godot_scene import (
+    MOTION,
+    write_godot_scene,
+    write_import_settings,
+    write_tree_scene,
+)
+from metagraph.engines.targets.godot_tree import spell_for_godot, write_animation_tree
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.engines.targets.unity_package import write_package_metas
 from metagraph.errors import FileError
+from metagraph.formats.atomic import write_atomically
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
 # Where READMEs find requests here; an export carries them along.
@@ -54,7 +63,7 @@ def copy_runtime(source: Path, target: Path, leave: tuple[str, ...] = ()) -> lis
     out = []
     for path in sorted(source.rglob("*")):
         inside = path.relative_to(source)
-        if path.is_dir() or any(p in leave or p == "__pycache__" or p.startswith(".") for p in inside.parts):
+        if path.is_dir() or any(p in leave or p == "__pycache__" or _is_hidden(p) for p in inside.parts):
             continue
         place = target / inside
         try:
@@ -80,6 +89,10 @@ def copy_runtime(source: Path, target: Path, leave: tuple[str, ...] = ()) -> lis
     return out
 
 
+def _is_hidden(name: str) -> bool:
+    return name.startswith(".") and name != ".gdignore"  # which keeps Godot out of a folder
+
+
 def _with(runtime: str, under: str) -> Callable[[ExportOrder], ExportedFiles]:
     def write(order: ExportOrder) -> ExportedFiles:
         made = write_with_sounds(order)
@@ -98,10 +111,21 @@ def _copy_glb(order: ExportOrder, ending: str) -> Path:
 
 
 def _godot(order: ExportOrder) -> ExportedFiles:
-    """Write the export, the add-on and a scene that plays."""
+    """Write the export, the add-on, a scene that plays, and the same clips as Godot's own resources."""
     made = write_with_sounds(order, WAV | OGG_AND_MP3)
-    files = [_copy_glb(order, MOTION), *write_godot_scene(order.project, order.folder, order.stem)]
-    return ExportedFiles((*made.files, *files, *copy_runtime(RUNTIMES / "godot", order.folder)), made.notes)
+    project, folder, stem = order.project, order.folder, order.stem
+    files = [_copy_glb(order, MOTION), *write_godot_scene(project, folder, stem)]
+    files.append(write_import_settings(folder, f"{stem}.glb", False))
+    built = list_machines(project, spell_for_godot)
+    if built:
+        library, tree = folder / f"{stem}.library.tres", folder / f"{stem}.tree.tres"
+        write_atomically(library, write_animation_library(project, built).encode())
+        write_atomically(tree, write_animation_tree(project, built, 4).encode())
+        scene = write_tree_scene(project, folder, stem, f"{stem}.tree", built, library.name)
+        files += [library, tree, *scene]
+    for part in ("addons", "godot3"):
+        files += copy_runtime(RUNTIMES / "godot" / part, folder / part)
+    return ExportedFiles((*made.files, *files), made.notes)
 
 
 def _unity(order: ExportOrder) -> ExportedFiles:
