@@ -81,6 +81,12 @@ def core(csharp_core: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return Path(shutil.copy(csharp_core, tmp_path_factory.mktemp("unity")))
 
 
+@pytest.fixture(scope="module")
+def unity(core: Path) -> csharp_runtime.UnityStandIn:
+    """The Unity package, compiled against stand-ins for Unity's types."""
+    return csharp_runtime.compile_package(core)
+
+
 @pytest.fixture(scope="session")
 def rare(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with an export and vectors of what few exports need."""

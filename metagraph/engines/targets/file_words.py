@@ -45,7 +45,8 @@ FILES: Mapping[str, Mapping[str, str]] = {
         "{stem}.glb.import": "how Godot imports it",
     },
     "unity": {
-        "{stem}.metagraph": "the clips, which the package imports",
+        "{stem}.metagraph": "the clips; the package makes the character of it",
+        "{stem}.humanoid.json": "the bones of a humanoid, for retargeting",
         "{stem}.glb": "the character's mesh, which Unity imports with glTFast or UnityGLTF",
         "Metagraph/": "the package; its README has all calls",
     },

@@ -95,10 +95,8 @@ STEPS: Mapping[str, NextSteps] = {
             phrase(
                 "Copy 'Metagraph' into the Packages folder of your Unity project, and all else into Assets."
             ),
-            phrase(
-                "Put '{stem}.glb' into the scene. Unity imports it with the package glTFast or UnityGLTF."
-            ),
-            phrase("Add the component MetagraphCharacter to it. It finds its files. Press Play."),
+            phrase("Drag the imported '{stem}.metagraph' into the scene. It is the character, with its clips."),
+            phrase("Press Play. Make requests from a script."),
         ),
         "engines/unity",
         "csharp",

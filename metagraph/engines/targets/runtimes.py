@@ -28,6 +28,7 @@ from metagraph.engines.targets.godot_scene import (
 )
 from metagraph.engines.targets.godot_tree import spell_for_godot, write_animation_tree
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
+from metagraph.engines.targets.unity_humanoid import write_humanoid
 from metagraph.engines.targets.unity_package import write_package_metas
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
@@ -134,7 +135,12 @@ def _unity(order: ExportOrder) -> ExportedFiles:
     package = order.folder / "Metagraph"
     files = copy_runtime(RUNTIMES / "unity", package)
     metas = write_package_metas(package, files)
-    return ExportedFiles((*made.files, _copy_glb(order, ".glb.bytes"), *files, *metas), made.notes)
+    own = [_copy_glb(order, ".metagraph")]
+    bones = write_humanoid(order.project)
+    if bones is not None:
+        own.append(order.folder / f"{order.stem}.humanoid.json")
+        write_atomically(own[-1], bones)
+    return ExportedFiles((*made.files, *own, *files, *metas), made.notes)
 
 
 PLUGIN = "Plugins/Metagraph"  # where Unreal looks for a project's plugins
@@ -180,7 +186,7 @@ TARGETS = (
     ExportTarget(
         "unity",
         phrase("Unity package"),
-        phrase("JSON, GLB and the C# runtime in Metagraph/"),
+        phrase("a file that imports as a character with clips, JSON, GLB and the C# package in Metagraph/"),
         _unity,
         (BML,),
         untried=phrase("compiled and tested outside Unity; not tested in Unity"),
