@@ -84,7 +84,7 @@ STEPS: Mapping[str, NextSteps] = {
     ),
     "unity-controller": NextSteps(
         (
-            phrase("Drop this folder, its .meta files included, into the Assets of your Unity project."),
+            phrase("Open your Unity project, double-click '{stem}.unitypackage', and press Import."),
             phrase("'{stem}.unity.md' says how to set up the Animator, and lists the numbers for requests."),
         ),
         "engines/unity",
@@ -95,7 +95,9 @@ STEPS: Mapping[str, NextSteps] = {
             phrase(
                 "Copy 'Metagraph' into the Packages folder of your Unity project, and all else into Assets."
             ),
-            phrase("Drag the imported '{stem}.metagraph' into the scene. It is the character, with its clips."),
+            phrase(
+                "Drag the imported '{stem}.metagraph' into the scene. It is the character, with its clips."
+            ),
             phrase("Press Play. Make requests from a script."),
         ),
         "engines/unity",
