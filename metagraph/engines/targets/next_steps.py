@@ -121,10 +121,12 @@ STEPS: Mapping[str, NextSteps] = {
         (
             phrase("Export into the folder of your .uproject, open the project and let it build the plugin."),
             phrase("Import '{stem}.json' as a Metagraph asset and '{stem}.glb' as a skeletal mesh."),
-            phrase("Give an actor the mesh and a Metagraph component, and set the component's asset."),
-            phrase("Put the node Metagraph before the output pose of the mesh's animation blueprint."),
+            phrase("Give an actor the mesh and a Metagraph component with the asset. Press Play."),
         ),
         "engines/unreal",
+        "cpp",
+        'UMetagraphComponent* Character = Actor->FindComponentByClass<UMetagraphComponent>();\n'
+        'Character->Gesture({TEXT("greeting")});\nCharacter->Say(TEXT("Hello! How are you?"));\n',
     ),
     "playcanvas": NextSteps(
         (
