@@ -125,7 +125,7 @@ STEPS: Mapping[str, NextSteps] = {
         ),
         "engines/unreal",
         "cpp",
-        'UMetagraphComponent* Character = Actor->FindComponentByClass<UMetagraphComponent>();\n'
+        "UMetagraphComponent* Character = Actor->FindComponentByClass<UMetagraphComponent>();\n"
         'Character->Gesture({TEXT("greeting")});\nCharacter->Say(TEXT("Hello! How are you?"));\n',
     ),
     "playcanvas": NextSteps(
