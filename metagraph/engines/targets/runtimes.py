@@ -144,16 +144,21 @@ def _unity(order: ExportOrder) -> ExportedFiles:
 
 
 PLUGIN = "Plugins/Metagraph"  # where Unreal looks for a project's plugins
+CORE_IN_PLUGIN = "Source/Metagraph/Private/Core"
+
+
+def copy_core(folder: Path) -> list[Path]:
+    """Copy the C++ headers that Unreal's plugin includes; return them. Raises FileError."""
+    return copy_runtime(
+        RUNTIMES / "cpp", folder, ("README.md", "LICENSE", "conformance.hpp", "conformance.cpp")
+    )
 
 
 def _plugin(order: ExportOrder) -> ExportedFiles:
     """Write the export and Unreal's plugin, the C++ runtime inside it."""
     made = write_with_sounds(order)
     files = copy_runtime(RUNTIMES / "unreal", order.folder / PLUGIN)
-    core = order.folder / PLUGIN / "Source" / "Metagraph" / "Private" / "Core"
-    files += copy_runtime(
-        RUNTIMES / "cpp", core, ("README.md", "LICENSE", "conformance.hpp", "conformance.cpp")
-    )
+    files += copy_core(order.folder / PLUGIN / CORE_IN_PLUGIN)
     return ExportedFiles((*made.files, *files), made.notes)
 
 
