@@ -257,7 +257,7 @@ class Animator:
         return True
 
     def goes(self, name: str, numbers: dict[str, int], pulled: bool) -> tuple[str, float | None] | None:
-        """Return where a state goes, and at which share of it; None where it stays."""
+        """Return where a state goes, and at which share of it; None if it stays."""
         for one in map(self.controller.at, self.states[name]["m_Transitions"]):
             if self.holds(one, numbers, pulled):
                 exits = float(one["m_ExitTime"]) if one["m_HasExitTime"] == "1" else None

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.engines.targets.unity_humanoid import name_unity_bone, write_humanoid
+from metagraph.engines.targets.unity_humanoid import spell_human_bone, write_humanoid
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Project
 from tests.engines.csharp_runtime import STICK, UnityStandIn, compiled, mono, needs_mono
@@ -232,7 +232,7 @@ def test_an_export_names_the_bones_of_a_humanoid_as_unity_does(few: Path) -> Non
     assert {*found["bones"].values()} <= {*project.skeleton.names}
     turns = np.reshape(found["rotations"], (-1, 4))
     assert len(turns) == len(project.skeleton) and np.abs(np.linalg.norm(turns, axis=1) - 1).max() < 1e-4
-    assert name_unity_bone("leftThumbProximal") == "Left Thumb Intermediate"
+    assert spell_human_bone("leftThumbProximal") == "Left Thumb Intermediate"
 
 
 def test_a_figure_that_is_no_humanoid_has_no_bones(toy: object) -> None:

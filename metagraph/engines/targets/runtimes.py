@@ -183,7 +183,7 @@ TARGETS = (
     ExportTarget(
         "godot",
         phrase("Godot 4 add-on"),
-        phrase("a scene that plays, JSON, GLB and the GDScript runtime in addons/metagraph/"),
+        phrase("scenes that play, an AnimationLibrary, JSON, GLB and the add-on in addons/metagraph/"),
         _godot,
         (BML,),
         group=phrase("Same playback as the preview"),

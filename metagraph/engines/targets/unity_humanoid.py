@@ -16,7 +16,7 @@ THUMB = {"Metacarpal": "Proximal", "Proximal": "Intermediate", "Distal": "Distal
 FINGER = re.compile(r"(left|right)(Thumb|Index|Middle|Ring|Little)(Metacarpal|Proximal|Intermediate|Distal)")
 
 
-def name_unity_bone(bone: str) -> str:
+def spell_human_bone(bone: str) -> str:
     """Return what Unity calls one of VRM's bones: `Left Index Proximal`."""
     found = FINGER.fullmatch(bone)
     if found is None:
@@ -36,7 +36,7 @@ def write_humanoid(project: Project) -> bytes | None:
         return None
     bones = find_vrm_bones(skeleton, roles)
     made = {
-        "bones": {name_unity_bone(bone): skeleton.names[joint] for bone, joint in bones.items()},
+        "bones": {spell_human_bone(bone): skeleton.names[joint] for bone, joint in bones.items()},
         "rotations": np.round(np.asarray(stand.rotations, float), 6).ravel().tolist(),
         "translations": np.round(np.asarray(stand.translations, float), 6).ravel().tolist(),
     }
