@@ -452,7 +452,8 @@ class ExportedParameter(Struct, omit_defaults=True, forbid_unknown_fields=True):
     """A named value that a game sets. request: what that requests, as JSON. field: of the request, which the
     value goes into; "" for a trigger. initial: the value until it is set; null for a trigger. choices: of an
     enum or a list; of a boolean what it does when off, then when on. least, most: of a number. beside: other
-    parameters whose values, if they were set, go into the same request.
+    parameters whose values, if they were set, go into the same request. replaces: others that are bound to
+    the same; they are as if they were not set, once it is.
     """
 
     type: ParameterType
@@ -464,6 +465,7 @@ class ExportedParameter(Struct, omit_defaults=True, forbid_unknown_fields=True):
     most: Number = 1.0
     about: str = ""
     beside: list[str] = []
+    replaces: list[str] = []
 
 
 class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):

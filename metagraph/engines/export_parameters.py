@@ -8,7 +8,7 @@ import msgspec
 
 from metagraph.engines import contract as c
 from metagraph.graph.model import Project
-from metagraph.graph.parameter import CharacterParameter, get_first_value, is_beside
+from metagraph.graph.parameter import CharacterParameter, get_first_value, is_beside, is_replaced
 from metagraph.graph.requests import make_request
 
 
@@ -25,6 +25,11 @@ def export_parameters(project: Project) -> dict[str, c.ExportedParameter]:
             parameter.most,
             parameter.about,
             [key for key, other in project.parameters.items() if is_beside(parameter, other)],
+            [
+                key
+                for key, other in project.parameters.items()
+                if key != name and is_replaced(parameter, other)
+            ],
         )
         for name, parameter in project.parameters.items()
     }

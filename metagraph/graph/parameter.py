@@ -170,6 +170,9 @@ class ParameterValues:
             if beside is not None and is_beside(parameter, beside):
                 fields[beside.field] = fill_in(beside, given)
         request = make_request(msgspec.to_builtins(parameter.request) | fields)
+        for other, beside in parameters.items():
+            if other != name and is_replaced(parameter, beside):
+                self.values.pop(other, None)
         self.values[name] = found
         return request
 
@@ -180,6 +183,16 @@ def is_beside(parameter: CharacterParameter, other: CharacterParameter) -> bool:
     """
     same = parameter.does == other.does and parameter.does in LASTING
     return same and parameter.field != other.field
+
+
+def is_replaced(parameter: CharacterParameter, other: CharacterParameter) -> bool:
+    """Return whether two parameters are bound to the same thing, so that setting one unsets the other."""
+    if parameter.does != other.does or parameter.field != other.field or parameter.does not in LASTING:
+        return False
+    return all(
+        getattr(parameter.request, field, None) == getattr(other.request, field, None)
+        for field in ("layer", "name")
+    )
 
 
 def fill_in(parameter: CharacterParameter, value: Any) -> Any:

@@ -20,6 +20,7 @@ from metagraph.engines.export import (
 )
 from metagraph.engines.targets.godot_scene import MOTION, write_godot_scene
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
+from metagraph.engines.targets.typed_wrappers import write_wrapper
 from metagraph.engines.targets.unity_package import write_package_metas
 from metagraph.errors import FileError
 
@@ -83,9 +84,8 @@ def copy_runtime(source: Path, target: Path, leave: tuple[str, ...] = ()) -> lis
 def _with(runtime: str, under: str) -> Callable[[ExportOrder], ExportedFiles]:
     def write(order: ExportOrder) -> ExportedFiles:
         made = write_with_sounds(order)
-        return ExportedFiles(
-            (*made.files, *copy_runtime(RUNTIMES / runtime, order.folder / under)), made.notes
-        )
+        files = [*write_wrapper(order, runtime), *copy_runtime(RUNTIMES / runtime, order.folder / under)]
+        return ExportedFiles((*made.files, *files), made.notes)
 
     return write
 
@@ -101,6 +101,7 @@ def _godot(order: ExportOrder) -> ExportedFiles:
     """Write the export, the add-on and a scene that plays."""
     made = write_with_sounds(order, WAV | OGG_AND_MP3)
     files = [_copy_glb(order, MOTION), *write_godot_scene(order.project, order.folder, order.stem)]
+    files += write_wrapper(order, "gdscript")
     return ExportedFiles((*made.files, *files, *copy_runtime(RUNTIMES / "godot", order.folder)), made.notes)
 
 
@@ -110,7 +111,8 @@ def _unity(order: ExportOrder) -> ExportedFiles:
     package = order.folder / "Metagraph"
     files = copy_runtime(RUNTIMES / "unity", package)
     metas = write_package_metas(package, files)
-    return ExportedFiles((*made.files, _copy_glb(order, ".glb.bytes"), *files, *metas), made.notes)
+    files = [_copy_glb(order, ".glb.bytes"), *write_wrapper(order, "csharp"), *files]
+    return ExportedFiles((*made.files, *files, *metas), made.notes)
 
 
 PLUGIN = "Plugins/Metagraph"  # where Unreal looks for a project's plugins

@@ -5,6 +5,7 @@ import { readAsk } from "./asks.js";
 import { describe } from "./describe.js";
 import { answers, hear, since } from "./hear.js";
 import { findLineStart } from "./items.js";
+import { Parameters } from "./parameters.js";
 import { emptyPlan } from "./plan.js";
 import { Player } from "./pose.js";
 import { SpeechWatch } from "./speech_watch.js";
@@ -42,6 +43,7 @@ export class Character {
     this.asked = new Set(); // ids that the plan can tell of
     this.settled = new Map(); // answers of those it has forgotten or never heard of
     this.sounds = new Map(); // of lines that are heard, by their ids
+    this.parameters = new Parameters(graph.parameters);
     this.count = 0;
     this.speech = new SpeechWatch();
     this.seen = -Infinity; // when the update before was
@@ -75,6 +77,22 @@ export class Character {
     this.asked.add(id);
     this.queue.push(data);
     return id;
+  }
+
+  /**
+   * Set a parameter of the project; returns the id of the request that this makes. A number outside of its range becomes the nearest
+   * inside, a trigger has no value, and what is set to the value that it has makes no request again. Never throws: what cannot be set
+   * is refused.
+   * @param {string} name @param {number | boolean | string | string[] | number[]} [value] as `describe().parameters` says
+   */
+  setParameter(name, value) {
+    const refuse = (why) => this.refuse(`#${(this.count += 1)}`, why);
+    return this.parameters.set(name, value, (request) => this.ask(request), refuse);
+  }
+
+  /** Return the value that a parameter was set to, else its first one; null for a trigger, undefined for an unknown name. */
+  getParameter(name) {
+    return this.parameters.get(name);
   }
 
   /**

@@ -100,6 +100,7 @@ export class Graph {
     this.life = readLife(data.life);
     this.points = new Map(Object.entries(data.points ?? {}));
     this.lines = new Map(Object.entries(data.lines ?? {}));
+    this.parameters = data.parameters ?? {}; // what games set, by name
     this.voices = new Voices(data.voices);
     this.unmade = []; // offsets that nobody has needed yet
     if (Number.isInteger(data.glb_bytes) && glb.byteLength !== data.glb_bytes) this.problems.push(otherGlb(data, glb.byteLength));

@@ -8,7 +8,7 @@ namespace Metagraph
     {
         /// <summary>
         /// What may be asked for, as JSON: "project", "words" (what "do" may be), "modes", "joints", "layers" (each "start", "stances",
-        /// "actions" but loops of stances, "tags" with the number of their actions), "lines", "points" by name, metres.
+        /// "actions" but loops of stances, "tags" with the number of their actions), "lines", "points" by name, metres, "parameters" by name.
         /// </summary>
         public string Describe()
         {
@@ -34,9 +34,14 @@ namespace Metagraph
             {
                 points[point.Key] = new List<object>(System.Array.ConvertAll(point.Value, x => (object)x));
             }
+            var parameters = new JsonObject();
+            foreach (KeyValuePair<string, Parameter> one in Parameters)
+            {
+                parameters[one.Key] = one.Value.Described();
+            }
             return Json.Write(Record(
                 "project", Name, "words", new List<object>(Ask.AllWords), "modes", new List<object>(Basics.Modes), "joints", joints,
-                "layers", layers, "lines", lines, "points", points));
+                "layers", layers, "lines", lines, "points", points, "parameters", parameters));
         }
 
         private static JsonObject Told(LayerGraph graph)

@@ -4,10 +4,12 @@ const Util = preload("util.gd")
 const Asks = preload("asks.gd")
 const Words = preload("words.gd")
 const Repeating = preload("repeating.gd")
+const Parameters = preload("parameters.gd")
 
 
 # Returns {project, words: what `do` may be, modes, joints [{name, parent, part}], layers {layer: {start, stances [{id, name}], actions but
-# loops of stances, tags {tag: number of actions}}}, lines [{id, text}], points {name: [x, y, z] metres}}.
+# loops of stances, tags {tag: number of actions}}}, lines [{id, text}], points {name: [x, y, z] metres},
+# parameters {name: {type, about, initial, least, most, choices}}}.
 static func describe(graph):
 	var words = []
 	for word in Asks.FIELDS:
@@ -27,7 +29,7 @@ static func describe(graph):
 		lines.append({id = id, text = graph.lines[id].get("text", "")})
 	return {
 		project = graph.name, words = words, modes = Words.MODES.duplicate(), joints = joints, layers = layers, lines = lines,
-		points = graph.spots
+		points = graph.spots, parameters = Parameters.describe(graph.parameters)
 	}
 
 
