@@ -33,7 +33,7 @@ def list_offered_requests(
     `project`, its name; `words`; `modes`; `joints` (name, parent, part); `layers`: for each its `start`, its
     `stances` (id, name), its `actions` but loops of stances (id, name, kind, stance, seconds; `to`, `limb`
     and `tags` if there are any) and `tags` with the number of actions; `lines` (id, text), by id; `points` by
-    name, metres; `parameters`, see `describe_parameters`.
+    name, metres; `parameters`, if there are any, see `describe_parameters`.
     """
     skeleton, parts = project.skeleton, anatomy.project_parts(project) if project.skeleton is not None else ()
     return {
@@ -50,7 +50,7 @@ def list_offered_requests(
             for ident in sorted(project.lines)[: most.get("lines")]
         ],
         "points": {name: list(point) for name, point in islice(project.points.items(), most.get("points"))},
-        "parameters": describe_parameters(project.parameters),
+        **({"parameters": describe_parameters(project.parameters)} if project.parameters else {}),
     }  # fmt: skip
 
 

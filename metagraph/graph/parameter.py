@@ -102,7 +102,7 @@ def make_word(text: str, taken: Collection[str] = (), otherwise: str = "value") 
     return found
 
 
-def name_choices(pairs: Iterable[tuple[str, ChoiceValue]]) -> tuple[ParameterChoice, ...]:
+def make_parameter_choices(pairs: Iterable[tuple[str, ChoiceValue]]) -> tuple[ParameterChoice, ...]:
     """Return a choice for each text and value, no two with the same name."""
     out: dict[str, ParameterChoice] = {}
     for text, value in pairs:

@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
-import msgspec
-
 from metagraph.common.wording import phrase
 from metagraph.graph.checks.parameters import list_parameter_faults
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, Action, Layer, Project
-from metagraph.graph.parameter import CharacterParameter, ChoiceValue, is_word, make_word, name_choices
+from metagraph.graph.parameter import (
+    CharacterParameter,
+    ChoiceValue,
+    is_word,
+    make_parameter_choices,
+    make_word,
+)
 from metagraph.graph.requests import (
     AnyRequest,
     Behave,
@@ -89,14 +93,6 @@ def remove_parameter(project: Project, name: str) -> Project:
     return replace(project, parameters={k: x for k, x in project.parameters.items() if k != name})
 
 
-def move_parameter(project: Project, name: str, by: int) -> Project:
-    """Return the project with a parameter so many places further down."""
-    names = list(project.parameters)
-    place = names.index(name)
-    names.insert(max(0, place + by), names.pop(place))
-    return replace(project, parameters={key: project.parameters[key] for key in names})
-
-
 def list_offered_parameters(project: Project) -> list[OfferedParameter]:
     """Return what new parameters can be bound to in a project, with names and values to begin with."""
     out = [*_list_states(project)]
@@ -161,7 +157,7 @@ def _list_states(project: Project) -> Iterable[OfferedParameter]:
     modes: list[tuple[str, ChoiceValue]] = [("automatic", None), *((mode, mode) for mode in MODES)]
     yield _make_enum(phrase("What it does: idle, listening, talking"), "mode", Behave(), "mode", modes)
     for name, mode in (("speaking", "talking"), ("listening", "listening")):
-        switch = name_choices([("off", None), ("on", mode)])
+        switch = make_parameter_choices([("off", None), ("on", mode)])
         words = phrase("Whether it speaks") if name == "speaking" else phrase("Whether it listens")
         yield OfferedParameter(
             "state",
@@ -178,7 +174,10 @@ def _list_states(project: Project) -> Iterable[OfferedParameter]:
             phrase("A gesture with these tags"),
             "gesture_with",
             CharacterParameter(
-                type="list", request=Gesture(), field="tags", choices=name_choices((t, t) for t in tags)
+                type="list",
+                request=Gesture(),
+                field="tags",
+                choices=make_parameter_choices((t, t) for t in tags),
             ),
         )
 
@@ -206,31 +205,9 @@ def _make_enum(
         "state",
         words,
         name,
-        CharacterParameter(type="enum", request=request, field=field, choices=name_choices(pairs)),
+        CharacterParameter(type="enum", request=request, field=field, choices=make_parameter_choices(pairs)),
     )
 
 
 def _list_gestures(project: Project, layer: Layer) -> Iterable[Action]:
     return (x for x in project.graphs[layer].actions.values() if x.kind == "gesture")
-
-
-def rename_choice(parameter: CharacterParameter, name: str, new: str) -> CharacterParameter:
-    """Return a parameter with another name for a choice. Raises EditError as `rename_parameter`."""
-    if new != name and (not is_word(new) or any(c.name == new for c in parameter.choices)):
-        raise EditError(
-            phrase(
-                "'{name}' cannot be the choice's name: it is taken, or game code cannot have it. Use small "
-                "letters, digits and underscores.",
-                name=new,
-            )
-        )
-    renamed = (msgspec.structs.replace(c, name=new) if c.name == name else c for c in parameter.choices)
-    return msgspec.structs.replace(parameter, choices=tuple(renamed))
-
-
-def remove_choice(parameter: CharacterParameter, name: str) -> CharacterParameter:
-    """Return a parameter without a choice. Raises EditError for the last one."""
-    left = tuple(c for c in parameter.choices if c.name != name)
-    if not left:
-        raise EditError(phrase("A parameter needs at least one choice."))
-    return msgspec.structs.replace(parameter, choices=left)

@@ -95,8 +95,8 @@ export interface Description {
   >;
   readonly lines: readonly { readonly id: string; readonly text: string }[];
   readonly points: Readonly<Record<string, Point>>;
-  /** What games set, by name. */
-  readonly parameters: Readonly<Record<string, ParameterDescription>>;
+  /** What games set, by name; not there where an export has none. */
+  readonly parameters?: Readonly<Record<string, ParameterDescription>>;
 }
 
 /** A parameter: a named value of the character that a game sets. */

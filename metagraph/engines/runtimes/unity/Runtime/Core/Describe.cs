@@ -8,7 +8,8 @@ namespace Metagraph
     {
         /// <summary>
         /// What may be asked for, as JSON: "project", "words" (what "do" may be), "modes", "joints", "layers" (each "start", "stances",
-        /// "actions" but loops of stances, "tags" with the number of their actions), "lines", "points" by name, metres, "parameters" by name.
+        /// "actions" but loops of stances, "tags" with the number of their actions), "lines", "points" by name, metres, and, where there are
+        /// any, "parameters" by name.
         /// </summary>
         public string Describe()
         {
@@ -39,9 +40,14 @@ namespace Metagraph
             {
                 parameters[one.Key] = one.Value.Described();
             }
-            return Json.Write(Record(
+            JsonObject found = Record(
                 "project", Name, "words", new List<object>(Ask.AllWords), "modes", new List<object>(Basics.Modes), "joints", joints,
-                "layers", layers, "lines", lines, "points", points, "parameters", parameters));
+                "layers", layers, "lines", lines, "points", points);
+            if (Parameters.Count > 0)
+            {
+                found["parameters"] = parameters;
+            }
+            return Json.Write(found);
         }
 
         private static JsonObject Told(LayerGraph graph)
