@@ -67,7 +67,9 @@ def _list_own(name: str, parameter: CharacterParameter) -> Iterator[Problem]:
     enough = len(words) == needed if parameter.type == "boolean" else len(words) >= needed
     if not fits or not enough or (parameter.type == "number" and not parameter.least < parameter.most):
         yield _make_fault(
-            phrase("parameter '{name}' is no {type} that can be set", name=name, type=phrase(parameter.type))
+            phrase(
+                "parameter '{name}': its type does not fit its request, field, range or choices", name=name
+            )
         )
         return
     for value in _list_values(parameter):
