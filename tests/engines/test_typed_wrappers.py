@@ -490,6 +490,11 @@ const Graph = preload("res://addons/metagraph/core/graph.gd")
 const Performer = preload("res://addons/metagraph/core/character.gd")
 const Shim = preload("res://addons/metagraph/core/shim4.gd")
 const Stick = preload("res://stick_parameters.gd")
+const TalkCharacter = preload("res://talk_parameters.gd")
+
+func page(performer):
+PAGE
+	return [talk.mood, talk.energy, talk.arms_stance, talk.partner.y]
 
 func _ready():
 	var graph = Graph.new(Shim.text_of(Shim.read_bytes("res://stick.data")), Shim.read_bytes("res://stick.motion"))
@@ -533,6 +538,7 @@ func _ready():
 	out["described"] = character.describe().parameters
 	for parameter in out.described:
 		out["values"][parameter] = character.get_parameter(parameter)
+	out["page"] = page(Performer.new(graph, {}))
 	print("seen ", JSON.stringify(out if kept else {"kept": kept}))
 	get_tree().quit(0)
 """
@@ -547,11 +553,69 @@ def test_godot_4(project: Project, export: Path, wanted: Told, tmp_path: Path, b
         if path.is_file() and "godot3" not in path.parts and path.name != "shim3.gd"
     }
     text = make_wrapper(project, "stick", "gdscript")["stick_parameters.gd"]
-    files |= {"stick_parameters.gd": text.encode(), "main.gd": GODOT4.encode()}
+    body = "".join(f"\t{line}\n" for line in read_block("gdscript").splitlines())
+    files |= {"stick_parameters.gd": text.encode(), "main.gd": GODOT4.replace("PAGE\n", body).encode()}
+    page = make_wrapper(replace(project, name="talk"), "talk", "gdscript")["talk_parameters.gd"]
+    files["talk_parameters.gd"] = page.replace("class_name TalkCharacter\n", "").encode()
     files |= {"stick.data": export.read_bytes(), "stick.motion": export.with_suffix(".glb").read_bytes()}
     code, told = play(tmp_path, browse, files)
     assert code == 0, told[-3000:]
-    compare(seen(told), wanted)
+    found = seen(told)
+    assert found["page"] == pytest.approx([4, 1.5, 1, 1.6])
+    compare(found, wanted)
+
+
+PAGE = Path(__file__).parents[2] / "docs" / "engines" / "parameters.md"
+
+
+def read_block(language: str) -> str:
+    """Return the page's code in a language."""
+    return PAGE.read_text(encoding="utf-8").split(f"```{language}\n")[1].split("```")[0]
+
+
+@pytest.fixture(scope="module")
+def talk(project: Project) -> Project:
+    return replace(project, name="talk")
+
+
+@needs_node
+def test_the_pages_javascript_runs(talk: Project, export: Path, tmp_path: Path) -> None:
+    code = make_wrapper(talk, "talk", "javascript")["talk.parameters.js"]
+    (tmp_path / "talk.parameters.mjs").write_text(code)
+    begin, rest = read_block("js").replace("parameters.js", "parameters.mjs").split("\n", 1)
+    made = f"""import {{ readFileSync }} from "node:fs";
+import {{ Character, load }} from "{RUNTIMES / "javascript" / "index.js"}";
+{begin}
+const character = new Character(load(readFileSync("{export}", "utf8"), readFileSync("{export.with_suffix(".glb")}")));
+{rest}
+character.update(1);
+console.log(JSON.stringify([talk.mood, talk.energy, talk.armsStance, talk.partner, character.answer("#5").state]));
+"""
+    (tmp_path / "game.mjs").write_text(made)
+    command = ["node", str(tmp_path / "game.mjs")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout) == ["happy", 1.5, "on_hips", [0.5, 1.6, 1.2], "planned"]
+
+
+@needs_mono
+def test_the_pages_csharp_compiles(talk: Project, tmp_path: Path) -> None:
+    (tmp_path / "TalkCharacter.cs").write_text(make_wrapper(talk, "talk", "csharp")["TalkCharacter.cs"])
+    body = read_block("csharp")
+    game = f"using Metagraph;\npublic static class Game {{ public static void Play(Character character) {{ {body} }} }}"
+    (tmp_path / "Game.cs").write_text(game)
+    compiled(tmp_path / "game.dll", tmp_path / "Game.cs", tmp_path / "TalkCharacter.cs", *CORE)
+
+
+@needs_compiler
+def test_the_pages_cpp_compiles(talk: Project, tmp_path: Path) -> None:
+    (tmp_path / "metagraph").symlink_to(RUNTIMES / "cpp")
+    (tmp_path / "talk_parameters.hpp").write_text(make_wrapper(talk, "talk", "cpp")["talk_parameters.hpp"])
+    code = f"std::string play(metagraph::Character& character) {{ {read_block('cpp')} return id; }}"
+    (tmp_path / "game.cpp").write_text(f'#include "talk_parameters.hpp"\n{code}\n')
+    command = ["g++", "-std=c++17", *FLAGS, "-fsyntax-only", "game.cpp"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stderr[:3000]
 
 
 LANGUAGES = ("javascript", "csharp", "gdscript", "cpp")
