@@ -285,7 +285,9 @@ def test_readmes_of_runtimes_name_no_file_that_is_not_there() -> None:
         text = BLOCK.sub("", readme.read_text(encoding="utf-8"))
         for name in re.findall(r"`([\w./-]+\.(?:m?js|gd|cs|hpp|py))`", text):
             folders = (readme.parent, readme.parent / "addons" / "metagraph", RUNTIMES / "web")
-            made = name == "metagraph-character.js" or name.startswith(("sample.", "sample_", "Sample"))  # by the export
+            made = name == "metagraph-character.js" or name.startswith(
+                ("sample.", "sample_", "Sample")
+            )  # by the export
             there = any((f / name).is_file() or [*f.rglob(Path(name).name)] for f in folders)
             assert made or there, (readme, name)
 

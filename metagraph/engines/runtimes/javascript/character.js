@@ -1,6 +1,5 @@
 /** One character of a game: takes requests as they come, plans ahead, and is posed every frame. */
 
-import { ALPHABET } from "./alphabet.js";
 import { readAsk } from "./asks.js";
 import { describe } from "./describe.js";
 import { answers, hear, since } from "./hear.js";
@@ -9,8 +8,6 @@ import { Parameters } from "./parameters.js";
 import { emptyPlan } from "./plan.js";
 import { Player } from "./pose.js";
 import { SpeechWatch } from "./speech_watch.js";
-import { spokenUntil } from "./spoken_so_far.js";
-import { StreamedVoice } from "./streamed_voice.js";
 import { findForgotten, findSoon } from "./utterances.js";
 import { LAYERS } from "./words.js";
 
@@ -102,10 +99,12 @@ export class Character {
    */
   saySound(id, samples, rate) {
     if (!(rate >= 8000 && rate <= 48000)) return this.refuse(id, "rate: should be a number from 8000 to 48000");
+    const { living } = this.graph;
+    if (!living) return this.refuse(id, "the part 'life' of the runtime is not loaded: load(json, glb, file, [\"life\"])");
     const begun = this.plan.track.lastSpeech(id);
     const waiting = this.queue.findIndex((ask) => ask.id === id && ask.do === "say"); // of the same update
     let voice = this.sounds.get(id);
-    if (voice?.rate !== rate || (begun === null && waiting < 0)) voice = new StreamedVoice(rate);
+    if (voice?.rate !== rate || (begun === null && waiting < 0)) voice = new living.StreamedVoice(rate);
     if (begun !== null) voice.follow(findSoon(this.now, this.graph.settings.lookahead) - findLineStart(begun));
     this.sounds.delete(id);
     this.sounds.set(id, voice);
@@ -231,7 +230,9 @@ export class Character {
    * @param {string} id @returns {{text: string, lastWord: string}}
    */
   spoken(id) {
-    const [text, lastWord] = spokenUntil(ALPHABET, this.plan.track.speeches, id, this.now);
+    const { living } = this.graph;
+    if (!living) return { text: "", lastWord: "" };
+    const [text, lastWord] = living.spokenUntil(living.ALPHABET, this.plan.track.speeches, id, this.now);
     return { text, lastWord };
   }
 

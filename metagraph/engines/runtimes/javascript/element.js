@@ -8,7 +8,7 @@
  * taken off, and `begin` and `end` of what is performed and said, as `Character.events` tells them, in `detail`.
  */
 
-import { load } from "./graph.js";
+import { load } from "./load.js";
 import { Sounds } from "./sounds.js";
 import { Stage, readGlb } from "./stage.js";
 import { StreamedVoice } from "./streamed_voice.js";
