@@ -203,6 +203,7 @@ def test_links_and_pictures_lead_somewhere(page: Path) -> None:
 # What exports, recipes and folders that strangers prepared have.
 OTHERS_FILES = {
     "Content/Python/metagraph_study_log.py",
+    "metagraph_study_log.py",
     "greeting_commands.py",
     "json.py",
     "numpy.py",

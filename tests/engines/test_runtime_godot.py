@@ -82,7 +82,11 @@ MUTATIONS = {
     "the hash": ("hashing.gd", "value ^= value >> 13", "value ^= value >> 12"),
     "a remainder has a key of its own": ("replan.gd", "last.part + 1 if kept else last.part", "last.part"),
     "holds hurry": ("cue_shapes.gd", "(hold_to - hold_from) / HURRY", "(hold_to - hold_from)"),
-    "what is too late": ("sampling.gd", "if least > allowed + CueShapes.FITS:", "if least > allowed + 9.0:"),
+    "what is too late": (
+        "punctuality.gd",
+        "if least > allowed + CueShapes.FITS:",
+        "if least > allowed + 9.0:",
+    ),
     "a stroke may be shared": ("cue_shapes.gd", "<= SHARED", "<= 0.0"),
     "the head sets off after the eyes": (
         "gaze.gd",

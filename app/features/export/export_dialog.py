@@ -104,6 +104,8 @@ class ExportDialog(QDialog):
         self.title.setProperty("heading", True)
         self.words, self.losses, self.trouble = (QLabel(self, wordWrap=True) for _ in range(3))
         self.words.setProperty("dim", True)
+        for told in (self.words, self.trouble):  # paths and addresses can be copied
+            told.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.losses.setTextFormat(Qt.TextFormat.RichText)
         self.losses.setAlignment(Qt.AlignmentFlag.AlignTop)
         lost = QScrollArea(self, widgetResizable=True)
@@ -317,10 +319,15 @@ class ExportDialog(QDialog):
         """Show what was written: a web page in the browser, all else as a folder."""
         name = self.target.name
         folder = self.results[name].folder
-        if name == "web":
-            QDesktopServices.openUrl(QUrl(serve_folder(folder)))
-        else:
-            open_folder(Path(folder))
+        if name != "web":
+            if not open_folder(Path(folder)):
+                self.trouble.setText(tr("No program opened. The folder is {folder}.").format(folder=folder))
+            return
+        address = serve_folder(folder)
+        opened = QDesktopServices.openUrl(QUrl(address))
+        told = tr("The page is at {address} while Metagraph runs.").format(address=address)
+        self.words.setText(f"{self.results[name].words}\n{told}")
+        self.trouble.setText("" if opened else tr("No browser opened. Open that address yourself."))
 
     # --- writing
 

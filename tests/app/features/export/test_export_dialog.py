@@ -150,7 +150,7 @@ def test_a_web_page_is_opened_in_the_browser_and_all_else_as_a_folder(toys, tmp_
     from metagraph.engines.targets import web
 
     opened_urls = []
-    monkeypatch.setattr(panel.QDesktopServices, "openUrl", opened_urls.append)
+    monkeypatch.setattr(panel.QDesktopServices, "openUrl", opened_urls.append)  # None: no program opened
     monkeypatch.setattr(web, "is_three_at_hand", lambda: False)
     drive = toys
     dialog = opened(drive)
@@ -167,6 +167,8 @@ def test_a_web_page_is_opened_in_the_browser_and_all_else_as_a_folder(toys, tmp_
             60,
         )
         QTest.mouseClick(dialog.open_button, Qt.MouseButton.LeftButton)
+        assert "opened" in dialog.trouble.text(), "where nothing opens, this says so"
+        assert opened_urls[-1].path() in dialog.words.text() + dialog.trouble.text(), "and where it is"
     page, folder = opened_urls
     with urllib.request.urlopen(page.toString(), timeout=10) as answer:
         assert b"player/main.js" in answer.read()
