@@ -146,6 +146,7 @@ TARGETS = (
         (BML,),
         group=phrase("Same playback as the preview"),
         unpacks=True,
+        packs=True,
     ),
     ExportTarget(
         "godot",

@@ -109,5 +109,6 @@ TARGETS = (
         ),
         group=phrase("Same playback as the preview"),
         unpacks=True,
+        packs=True,
     ),
 )
