@@ -37,7 +37,8 @@ from tests.engines.cpp_program import FLAGS, needs_compiler
 from tests.engines.csharp_runtime import CORE, compiled, mono, needs_mono
 from tests.engines.godot4_web import needs_godot4, play, seen
 from tests.engines.godot_runtime import godot, needs_godot
-from tests.engines.javascript_runtime import needs_node
+from tests.engines.godot_runtime import run as run_in_godot
+from tests.engines.javascript_runtime import needs_node, run
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
 STICK = RUNTIMES.with_name("conformance") / "stick"
@@ -483,6 +484,57 @@ def test_godot_3(export: Path, wanted: Told, tmp_path: Path) -> None:
     _, told = godot(tmp_path, "game.gd")
     line = next(line for line in told.splitlines() if line.startswith("OUT "))
     compare(json.loads(line.removeprefix("OUT ").replace(",inf", ",null")), wanted)
+
+
+BROKEN: tuple[Any, ...] = (
+    None,
+    5,
+    {},
+    {"type": "number"},
+    {"type": "odd", "request": {}},
+    {"type": "boolean", "request": {"do": "mode"}, "choices": []},
+    {"type": "enum", "request": {"do": "mode"}, "choices": [5]},
+    {"type": "enum", "request": [], "choices": []},
+    {"type": "number", "request": {"do": "mood"}, "least": "low"},
+    {"type": "number", "request": {"do": "mood"}, "beside": 1},
+)
+
+
+@needs_node
+@pytest.mark.parametrize("broken", BROKEN, ids=str)
+def test_a_broken_parameter_is_an_error_of_loading(export: Path, broken: Any) -> None:
+    found = run(
+        """
+        const data = { ...JSON.parse(text), parameters: { broken: JSON.parse(rest[0]) } };
+        try {
+          load(JSON.stringify(data), glb);
+          say("loaded");
+        } catch (error) {
+          say(error.message);
+        }
+        """,
+        STICK,
+        json.dumps(broken),
+    )
+    assert "parameters.broken" in found
+
+
+@needs_godot
+def test_a_broken_parameter_is_an_error_of_loading_in_godot(export: Path, tmp_path: Path) -> None:
+    shutil.copytree(RUNTIMES / "godot" / "addons", tmp_path / "addons")
+    (tmp_path / "project.godot").write_text('config_version=4\n\n[application]\n\nconfig/name="game"\n')
+    document = json.loads((STICK / "stick.json").read_bytes())
+    shutil.copy(STICK / "stick.glb", tmp_path)
+    paths = []
+    for n, broken in enumerate(BROKEN):
+        paths.append(tmp_path / f"broken{n}.json")
+        paths[-1].write_text(json.dumps({**document, "parameters": {"broken": broken}}))
+    errors = run_in_godot(
+        tmp_path,
+        'for path in words():\n\tout.append(read(path, "res://stick.glb").error)',
+        *map(str, paths),
+    )
+    assert all("$.parameters" in error for error in errors), errors
 
 
 GODOT4 = """extends Node

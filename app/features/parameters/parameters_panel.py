@@ -12,8 +12,8 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QMenu,
+    QPushButton,
     QScrollArea,
-    QToolButton,
     QVBoxLayout,
     QWidget,
 )
@@ -60,9 +60,7 @@ class ParametersPanel(QWidget):
         self._shown: list[QWidget] = []
         self._timer = QTimer(self, singleShot=True, interval=SOON)
         self._timer.timeout.connect(self.send)
-        self.add_button = QToolButton(self)
-        self.add_button.setText(tr("Add a parameter"))
-        self.add_button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.add_button = QPushButton(tr("Add a parameter"), self)
         self.add_menu = QMenu(self.add_button)
         self.add_menu.aboutToShow.connect(self.fill_menu)
         self.add_button.setMenu(self.add_menu)

@@ -5,6 +5,7 @@ import { Glb, GlbError } from "./glb.js";
 import { hear } from "./hear.js";
 import { readLife } from "./life.js";
 import { Markov, Settings, Stance, Timing } from "./model.js";
+import { readParameters } from "./parameters.js";
 import { Phases } from "./phase_times.js";
 import { emptyPlan } from "./plan.js";
 import { morphsAt, poseAt } from "./pose.js";
@@ -101,7 +102,7 @@ export class Graph {
     this.life = readLife(data.life);
     this.points = new Map(Object.entries(data.points ?? {}));
     this.lines = new Map(Object.entries(data.lines ?? {}));
-    this.parameters = data.parameters ?? {}; // what games set, by name
+    this.parameters = readParameters(data.parameters); // what games set, by name
     this.voices = new Voices(data.voices);
     this.unmade = []; // offsets that nobody has needed yet
     if (Number.isInteger(data.glb_bytes) && glb.byteLength !== data.glb_bytes) this.problems.push(otherGlb(data, glb.byteLength));

@@ -6,6 +6,20 @@
 const isNumber = (x) => typeof x === "number" && !Number.isNaN(x);
 const isLength = (x) => isNumber(x) && Math.abs(x) <= 1e6;
 
+const TYPES = ["number", "boolean", "enum", "list", "point", "trigger"];
+const isObject = (x) => typeof x === "object" && x !== null && !Array.isArray(x);
+
+/** Return an export's parameters, by name. @param {?object} data @throws {Error} for what is none */
+export function readParameters(data) {
+  for (const [name, parameter] of Object.entries(data ?? {})) {
+    const { type, request, choices = [], beside = [], replaces = [], field = "", least = 0, most = 1 } = parameter ?? {};
+    const lists = [choices, beside, replaces].every(Array.isArray) && choices.every((x) => isObject(x) && typeof x.name === "string");
+    const fine = TYPES.includes(type) && isObject(request) && lists && typeof field === "string" && isNumber(least) && isNumber(most);
+    if (!fine || (type === "boolean" && choices.length !== 2)) throw new Error(`parameters.${name} is no parameter`);
+  }
+  return data ?? {};
+}
+
 /** The values that a character's parameters were set to. */
 export class Parameters {
   /** @param {Record<string, object>} exported the export's `parameters` */
@@ -35,7 +49,7 @@ export class Parameters {
     if (this.values.has(name) && isSame(this.values.get(name), found)) return this.made.get(name);
     const fields = { [field]: fillIn(parameter, found) };
     for (const other of beside) {
-      if (this.values.has(other)) fields[this.exported[other].field] = fillIn(this.exported[other], this.values.get(other));
+      if (this.values.has(other) && Object.hasOwn(this.exported, other)) fields[this.exported[other].field] = fillIn(this.exported[other], this.values.get(other));
     }
     for (const other of replaces) this.values.delete(other); // they are bound to the same
     this.values.set(name, found);

@@ -189,7 +189,7 @@ namespace Metagraph
             request[parameter.Field] = parameter.Filled(value);
             foreach (string other in parameter.Beside)
             {
-                if (values.TryGetValue(other, out before))
+                if (parameters.ContainsKey(other) && values.TryGetValue(other, out before))
                 {
                     request[parameters[other].Field] = parameters[other].Filled(before);
                 }

@@ -50,6 +50,7 @@ const PARAMETER = {
 	replaces = "list?"
 }
 const CHOICE = {name = "text"}
+const PARAMETER_TYPES = ["number", "boolean", "enum", "list", "point", "trigger"]
 const VOICE = {duration = "number", accents = "list", weights = "list"}
 
 
@@ -109,8 +110,11 @@ static func _unlike(data):
 		one.choices = [] if one.choices == null else one.choices
 		one.beside = [] if one.beside == null else one.beside
 		one.replaces = [] if one.replaces == null else one.replaces
+		one.initial = one.get("initial")
 		one.least = 0.0 if one.least == null else float(one.least)
 		one.most = 1.0 if one.most == null else float(one.most)
+		if not PARAMETER_TYPES.has(one.type):
+			return "$.parameters.%s.type: should be one of %s" % [name, Util.joined(PARAMETER_TYPES, ", ")]
 		if one.type == "boolean" and one.choices.size() != 2:
 			return "$.parameters.%s: should have two choices" % name
 	var joints = {}

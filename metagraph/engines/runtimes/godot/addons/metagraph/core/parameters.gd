@@ -34,7 +34,7 @@ func request_for(name, value):
 		return [null, ""]
 	request[parameter.field] = _filled(parameter, found[0])
 	for other in parameter.beside:
-		if values.has(other):
+		if values.has(other) and exported.has(other):
 			request[exported[other].field] = _filled(exported[other], values[other])
 	for other in parameter.replaces:  # they are bound to the same
 		values.erase(other)
