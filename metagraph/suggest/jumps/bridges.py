@@ -368,7 +368,7 @@ def _metres(one: _Rest, other: _Rest) -> float:
 class _Course:
     """What a bridge plays: seconds first to last of the loop that it leaves (leaving) or enters, and which
     share of them its short blend takes. hurry: how fast the fastest joint goes, as a multiple of its limit.
-    held: the loop's moment is held all the while; None where its clip goes on.
+    held: the loop's moment that is held all the while; None if its clip goes on.
     """
 
     leaving: bool
