@@ -29,6 +29,7 @@ from metagraph.graph.requests import (
     Point,
     Say,
 )
+from metagraph.playback.life.wanted import PARTNER as USER
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.choice import uniform
 from metagraph.playback.planning.running_plan import plan_performance
@@ -143,6 +144,8 @@ def _looks(conversation: Conversation, side: int, heads: Sequence[Point]) -> Ite
     others = list_other_sides(conversation, side)
     if len(others) == 1:
         yield Place(id=PARTNER, at=0.0, name=PARTNER, point=heads[0])
+        # After a timed look, the gaze comes back to whom the character talks with: there, too.
+        yield Place(id=USER, at=0.0, name=USER, point=heads[0])
         yield Look(id="look", at=0.0, to=PARTNER)
         yield from look_at_turns(conversation, side, PARTNER, heads[0])
         return

@@ -27,7 +27,9 @@ from metagraph.playback.timing.phases import find_phases
 Array = NDArray[Any]
 
 STROKE, HELD = 1.0, 0.6  # what a stroke on a clause's peak is worth, and a hold over it
-UNASKED = (-0.5, -0.2, 0.1, 0.4)  # of that where none was drawn for the clause; more where too few have room
+# Of that where none was drawn for the clause: more where too few have room, and most in a stance that has so
+# few gestures that each repeats.
+UNASKED = (-0.5, -0.2, 0.1, 0.4, 0.7, 1.0)
 APART = 5.0  # seconds between the peaks of two clauses that do not hinder each other
 CUT, HURRIED, KEPT = (
     0.15,
@@ -104,11 +106,14 @@ def choose_gestures(
     known: dict[str, _Lengths] = {}
     used = _UsedGestures(project)
     out: list[ChosenGesture] = []
-    first = 0
+    first, owed = 0, 0
     for n in range(1, len(clauses) + 1):
         if n == len(clauses) or clauses[n].peak - clauses[n - 1].peak >= APART:
             begun = out[-1].end + project.settings.rest if out else 0.0
-            found = _of_turn(project, clauses[first:n], seed, length, known, begun, used)
+            turn = clauses[first:n]
+            found = _of_turn(project, turn, seed, (begun, length), known, used, owed)
+            # What had no room in one turn is made up for in the next ones, as in a stance with more gestures.
+            owed = max(0, owed + sum(c.wanted for c in turn) - _count_clauses(found))
             out += [replace(o, clause=o.clause + first, last=o.last + first) for o in found]
             for one in found:
                 used.note(one.action, clauses[one.clause + first].peak)
@@ -143,11 +148,12 @@ class _UsedGestures:
 
 
 def _of_turn(
-    project: Project, turn: Sequence[GestureClause], seed: int, length: float,
-    known: dict[str, _Lengths], begun: float, used: _UsedGestures,
+    project: Project, turn: Sequence[GestureClause], seed: int, span: tuple[float, float],
+    known: dict[str, _Lengths], used: _UsedGestures, owed: int,
 ) -> list[ChosenGesture]:  # fmt: skip
     """Return the gestures of clauses that nothing parts: chosen again with what repeats made dearer, as long
-    as that repeats less and serves as many clauses. begun: seconds before which none may play.
+    as that repeats less and serves as many clauses. span: seconds before and after which none may play. owed:
+    how many clauses more than were drawn are to get one.
     """
     tried = [_tried(project, clause, seed, known, used) for clause in turn]
     costs = {
@@ -155,14 +161,14 @@ def _of_turn(
         for n, (clause, actions) in enumerate(zip(turn, tried, strict=True))
         for action in actions
     }
-    best = _best_of_turn(project, turn, tried, costs, seed, length, known, begun)
+    best = _best_of_turn(project, turn, tried, costs, seed, span, known, owed)
     repeated = _repeated(turn, best, used)
     for _ in range(RETRIES):
         if not repeated:
             break
         for key, cost in repeated.items():
             costs[key] = costs[key] + cost
-        found = _best_of_turn(project, turn, tried, costs, seed, length, known, begun)
+        found = _best_of_turn(project, turn, tried, costs, seed, span, known, owed)
         again = _repeated(turn, found, used)
         if _count_clauses(found) < _count_clauses(best) or sum(again.values()) >= sum(repeated.values()):
             break
@@ -192,13 +198,13 @@ def _count_clauses(found: Sequence[ChosenGesture]) -> int:
 
 def _best_of_turn(
     project: Project, turn: Sequence[GestureClause], tried: Sequence[Sequence[Action]],
-    costs: Mapping[tuple[int, str], float], seed: int, length: float, known: dict[str, _Lengths],
-    begun: float,
+    costs: Mapping[tuple[int, str], float], seed: int, span: tuple[float, float],
+    known: dict[str, _Lengths], owed: int,
 ) -> list[ChosenGesture]:  # fmt: skip
     """Return the gestures that are worth most together: where too few of those that were drawn have room,
     others make up for them. costs: of each action for each clause.
     """
-    drawn = sum(c.wanted for c in turn)
+    drawn = sum(c.wanted for c in turn) + owed
     best: list[ChosenGesture] = []
     for unasked in UNASKED:
         options: list[ChosenGesture] = []
@@ -206,13 +212,13 @@ def _best_of_turn(
         firsts = [0]
         for n, actions in enumerate(tried):
             for action in actions:
-                for option, value in _options(turn, n, action, known[action.id], seed, length, unasked):
+                for option, value in _options(turn, n, action, known[action.id], seed, span[1], unasked):
                     options.append(option)
                     worth.append(value - costs[n, action.id])
             firsts.append(len(options))
         if not options:
             break
-        places = _best(options, np.array(worth), firsts, known, turn, project.settings.rest, begun)
+        places = _best(options, np.array(worth), firsts, known, turn, project.settings.rest, span[0])
         found = [options[o] for o in places]
         if _count_clauses(found) > _count_clauses(best):
             best = found
