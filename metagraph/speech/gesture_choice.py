@@ -9,8 +9,10 @@ dynamic programming over the clauses.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cache
 from math import inf, log
 from typing import Any
 
@@ -44,20 +46,23 @@ LONGEST_HOLD = 1.6  # seconds a hold is kept up at most
 AFTER = 0.1  # seconds a hold goes on after a peak it is kept for
 CHOICES = 10  # gestures tried for a clause, beside the shortest
 SHORT = 2  # of the shortest
+_PARTS = re.compile(r"[\W_\d]+")  # between words of a name
+_ARMS = frozenset(("l", "r", "lf", "rt", "bt", "left", "right", "both"))
 BACK = 12  # clauses that a gesture may reach over, at most
 
 
 @dataclass(frozen=True, slots=True)
 class GestureClause:
     """A clause that may get a gesture. key: of its draws. peak: seconds. wanted: whether one was drawn for
-    it. actions: those that go with its words. echoes: names of gestures that others make about then.
+    it. actions: those that go with its words. echoes: by family of gestures that others make about then, how
+    near that is, 0..1.
     """
 
     key: str
     peak: float
     wanted: bool
     actions: Sequence[Action]
-    echoes: frozenset[str] = frozenset()
+    echoes: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,8 +126,17 @@ def choose_gestures(
     return _freed(project, clauses, out, known)
 
 
+@cache
+def find_gesture_family(name: str) -> str:
+    """Return a gesture's name without its number and the arm that makes it: what viewers see as one gesture.
+    The name itself if nothing else is left.
+    """
+    words = [word for word in _PARTS.split(name.casefold()) if word and word not in _ARMS]
+    return " ".join(words) or name
+
+
 class _UsedGestures:
-    """What it costs to make gestures again, by when each was made last."""
+    """What it costs to make gestures again, by when one of each family was made last."""
 
     def __init__(self, project: Project) -> None:
         self._project, self._last, self._needed = project, dict[str, float](), dict[str, float]()
@@ -131,13 +145,13 @@ class _UsedGestures:
 
     def note(self, action: Action, at: float) -> None:
         """Note that a gesture's stroke is at a time."""
-        self._last[action.id] = at
+        self._last[find_gesture_family(action.name)] = at
 
     def cost(self, action: Action, at: float, last: float | None = None) -> float:
         """Return what a gesture costs whose stroke is at a time. last: when it was made before; None for
         when it was noted.
         """
-        before = self._last.get(action.id) if last is None else last
+        before = self._last.get(find_gesture_family(action.name)) if last is None else last
         if before is None or self._project.settings.variety <= 0:
             return 0.0
         if action.id not in self._needed:
@@ -157,7 +171,8 @@ def _of_turn(
     """
     tried = [_tried(project, clause, seed, known, used) for clause in turn]
     costs = {
-        (n, action.id): used.cost(action, clause.peak) + ECHOED * (action.name in clause.echoes)
+        (n, action.id): used.cost(action, clause.peak)
+        + ECHOED * clause.echoes.get(find_gesture_family(action.name), 0.0)
         for n, (clause, actions) in enumerate(zip(turn, tried, strict=True))
         for action in actions
     }
@@ -183,12 +198,12 @@ def _repeated(
     out: dict[tuple[int, str], float] = {}
     made: dict[str, float] = {}
     for one in found:
-        at = turn[one.clause].peak
-        if one.action.id in made:
-            cost = used.cost(one.action, at, made[one.action.id])
+        at, family = turn[one.clause].peak, find_gesture_family(one.action.name)
+        if family in made:
+            cost = used.cost(one.action, at, made[family])
             if cost > 0:
                 out[one.clause, one.action.id] = cost
-        made[one.action.id] = at
+        made[family] = at
     return out
 
 
