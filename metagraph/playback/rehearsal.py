@@ -32,6 +32,7 @@ from metagraph.playback.posing.composer import find_playable_motion
 from metagraph.playback.posing.foot_slides import RATE as FEET_RATE
 from metagraph.playback.posing.foot_slides import FeetWatch
 from metagraph.playback.posing.weight import has_planted_feet
+from metagraph.playback.quiet_layers import find_quiet_layers
 
 Array = NDArray[Any]
 
@@ -129,7 +130,9 @@ def rehearse(
     played = watch_plans(project, [(plan, length) for plan, length, _ in plans], step)
     for (plan, _, free), seen in zip(plans, played, strict=False):  # fewer, if it was cancelled
         out += _Findings(project, plan, seen, limits, free).problems()
-    return _merged(out)
+    if cancelled is not None and cancelled():
+        return _merged(out)
+    return _merged([*out, *find_quiet_layers(project)])
 
 
 def _ask_for_each(project: Project) -> tuple[list[Play], float]:
