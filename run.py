@@ -80,9 +80,17 @@ def main(arguments):
     words = arguments or (["window", "--sample"] if screen else ["demo"])
     # What it prints to type starts it as it was started.
     started = {"METAGRAPH_COMMAND": shlex.join([Path(sys.executable).name, sys.argv[0]])}
-    return problem or subprocess.call(
-        [str(PYTHON), "-P", "-m", "app.cli", *words], env={**os.environ, **started}
-    )
+    return problem or become([str(PYTHON), "-P", "-m", "app.cli", *words], {**os.environ, **started})
+
+
+def become(command, environ):
+    """Go on as another program, so that whoever ends this one ends that; where there is no such thing, wait
+    for it and return its exit status.
+    """
+    if WINDOWS:
+        return subprocess.call(command, env=environ)
+    sys.stdout.flush()
+    return os.execve(command[0], command, environ)
 
 
 # --- system libraries

@@ -8,10 +8,10 @@ from collections.abc import Collection
 from pathlib import Path
 
 from metagraph.formats.gltf.reader import read_character
-from metagraph.motion.character_mesh import explain_no_character
+from metagraph.motion.fitting.fit_character import put_on_skeleton
+from metagraph.motion.fitting.footing import Footing
 from metagraph.motion.skeleton import Skeleton
 from preview.default_body.figure import DefaultBody
-from preview.default_body.footing import Footing
 from preview.figure import MeshFigure, SkinnedFigure, StickFigure
 
 
@@ -31,7 +31,7 @@ def load_mesh_figure(
     if path is None:
         return _without_mesh(skeleton, footing, sticks)
     body = read_character(path)
-    why = explain_no_character(body, skeleton)
+    body, why = put_on_skeleton(body, skeleton, footing)
     shown = body.without(hidden)
     if why is None and not len(shown.triangles):
         why = "is hidden"

@@ -327,7 +327,7 @@ def test_it_starts_the_window_or_the_same_job_without_one(
     monkeypatch.setattr(run, "system_libraries", lambda *args: None)
     monkeypatch.setattr(run, "environment", lambda *args: None)
     calls = Started(5)
-    monkeypatch.setattr(run.subprocess, "call", calls)
+    monkeypatch.setattr(run.os, "execve", lambda path, command, environ: calls(command, env=environ))
     assert run.main(arguments) == 5
     assert calls[0][1:] == ["-P", "-m", "app.cli", *started]
     typed = shlex.split(calls.more["env"]["METAGRAPH_COMMAND"])

@@ -54,7 +54,8 @@ class Importing(QObject):
     being read. `imported` has an Imported, and the drop that says where to place it. `ended` has an Imported,
     once no more questions are asked about it. `noticed` has (title, ids of clips, lines) for clips that were
     repaired; the lines are further notes. `drops` take what is not a clip. `retarget` asks about clips of
-    other skeletons; without it they are left out. `bring` retargets them without asking.
+    other skeletons; without it they are left out. `bring` retargets them without asking. `guided`: whether
+    something else tells the user already what to do after an import.
     """
 
     told = Signal(str)
@@ -70,6 +71,7 @@ class Importing(QObject):
         self.drops: tuple[FileDrop, ...] = ()
         self.retarget: Retarget | None = None
         self.bring: Retarget | None = None
+        self.guided = False
         self._era = 0  # counts the projects that were shown
         document.loaded.connect(self._next_era)
 

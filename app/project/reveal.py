@@ -30,13 +30,15 @@ def reveal(path: Path) -> None:
     open_folder(next((p for p in path.parents if p.is_dir()), Path.home()))
 
 
-def open_folder(folder: Path) -> None:
-    """Show the content of a folder. Only folders are opened; on macOS, a folder that is a program is shown,
-    not started.
+def open_folder(folder: Path) -> bool:
+    """Show the content of a folder, and return whether a program did. Only folders are opened; on macOS, a
+    folder that is a program is shown, not started.
     """
-    if not folder.is_dir() or (sys.platform == "darwin" and folder.suffix and _shown(folder)):
-        return
-    QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))
+    if not folder.is_dir():
+        return False
+    if sys.platform == "darwin" and folder.suffix and _shown(folder):
+        return True
+    return QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))
 
 
 def _shown(path: Path) -> bool:

@@ -16,9 +16,9 @@ from app.stage.watch import Watch
 from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
+from metagraph.motion.fitting.footing import Footing, choose_footing
 from metagraph.motion.skeleton import Skeleton
 from preview.character_file import load_mesh_figure
-from preview.default_body.footing import Footing, choose_footing
 from preview.figure import MeshFigure, SkinnedFigure, StickFigure
 
 Key = tuple[str, str, tuple[str, ...]]  # the character's file, the skeleton it is bound to, what is hidden

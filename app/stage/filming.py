@@ -23,8 +23,8 @@ def make_project_figure(project: Project, folder: Path, sticks: bool = False) ->
     """Return the figure that draws a project; its `instead` says why it is not the character's mesh. `sticks`
     draws a stick figure in place of the default body. Raises FileError.
     """
+    from metagraph.motion.fitting.footing import choose_footing
     from preview.character_file import load_mesh_figure
-    from preview.default_body.footing import choose_footing
 
     assert project.skeleton is not None
     path = folder / project.character if project.character is not None else None

@@ -18,7 +18,7 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from metagraph.motion.clip import Clip
-from preview.default_body.footing import Footing
+from metagraph.motion.fitting.footing import Footing
 
 SIZE, SCALE = 112, 2
 MOVING_SIZE, MOVING_RATE, MOVING_MOST = (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -28,9 +28,9 @@ from metagraph.graph.face.expression_presets import make_presets
 from metagraph.graph.model import (
     Project,
 )
-from metagraph.motion.character_mesh import CharacterMesh, bind_character, explain_no_character
+from metagraph.motion.character_mesh import CharacterMesh, bind_character, is_bound_to
 from metagraph.motion.clip import Clip
-from metagraph.motion.skeleton import Skeleton, make_names_unique
+from metagraph.motion.skeleton import make_names_unique
 from metagraph.speech.sound import guess_sound_ending
 
 # Endings that engines import: of each, the containers that libsndfile names, and codings.
@@ -254,7 +254,7 @@ def _write_glb(
             phrase("creating the folder"),
             phrase("Choose a folder that you can write to."),
         ) from None
-    shown, notes = place_mesh_on(skeleton, character, project.hidden)
+    shown, notes = place_mesh_on(project, character)
     presets = make_presets(shown.morphs, project.face.channels) if shown is not None else {}
     props, unread = place_props(project, base)
     engine = ForEngine(expressions=presets, props=props)
@@ -263,32 +263,40 @@ def _write_glb(
 
 
 def place_mesh_on(
-    skeleton: Skeleton, given: Path | CharacterMesh | None, hidden: Collection[str] = ()
+    project: Project, given: Path | CharacterMesh | None
 ) -> tuple[CharacterMesh | None, list[str]]:
-    """Return the mesh that is written for clips of a skeleton, without hidden meshes, and notes about it. A
-    mesh of another skeleton is bound by the names of its joints, as the preview draws it, and left out if the
-    preview does not draw it. Raises FileError.
+    """Return the mesh that is written for a project's clips, without hidden meshes, and notes about it. A
+    mesh of another skeleton is bound by the names of its joints or fitted, as the preview draws it, and left
+    out if the preview does not draw it. Raises FileError.
     """
     from metagraph.formats.gltf.reader import read_character
+    from metagraph.motion.fitting.fit_character import is_named_alike, put_on_skeleton
+    from metagraph.motion.fitting.footing import choose_footing
+
+    skeleton = project.skeleton
+    assert skeleton is not None
 
     body = read_character(given) if isinstance(given, Path) else given
     if body is None or given is None:
         return None, []
     notes = []
     if body.skeleton != skeleton:
-        why = explain_no_character(body, skeleton)
+        alike = is_named_alike(body, skeleton)
+        there, count = sum(name in skeleton for name in body.skeleton.names), len(body.skeleton)
+        footing = choose_footing((entry.motion for entry in project.clips.values()), skeleton)
+        placed, why = put_on_skeleton(body, skeleton, footing)
         if why is not None:
             return None, [
                 f"the mesh of '{given.name}' is left out: it has another skeleton than the clips, and {why}"
             ]
-        there = sum(name in skeleton for name in body.skeleton.names)
-        notes.append(
-            f"the mesh of '{given.name}' has another skeleton than the clips: it is bound by the names of "
-            f"its joints, {there} of {len(body.skeleton)}"
-            + ("; the others move with the joint above them" if there < len(body.skeleton) else "")
-        )
-        body = bind_character(body, skeleton)
-    shown = body.without(hidden)
+        other = f"the mesh of '{given.name}' has another skeleton than the clips: it is "
+        if alike or placed is body:
+            more = "; the others move with the joint above them" if there < count else ""
+            notes.append(f"{other}bound by the names of its joints, {there} of {count}{more}")
+        else:
+            notes.append(f"{other}fitted to theirs, joint by joint")
+        body = placed if is_bound_to(placed, skeleton) else bind_character(placed, skeleton)
+    shown = body.without(project.hidden)
     return shown if len(shown.triangles) else None, notes
 
 

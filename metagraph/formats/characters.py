@@ -16,7 +16,8 @@ from metagraph.formats.gltf.reader import has_skinned_mesh, read_character, read
 from metagraph.graph.edits import hide_meshes, set_character, set_role
 from metagraph.graph.face.rig import with_morphs
 from metagraph.graph.model import Project
-from metagraph.motion.character_mesh import CharacterMesh, explain_no_character
+from metagraph.motion.character_mesh import CharacterMesh
+from metagraph.motion.fitting.fit_character import explain_no_fit
 from metagraph.motion.roles import ROLES, find_roles
 from metagraph.motion.skeleton import Skeleton
 
@@ -74,7 +75,7 @@ def _described(name: str, path: Path, body: CharacterMesh, skeleton: Skeleton | 
         for role, joint in stated.items()
         if role in ROLES and body.skeleton.index(joint) != found.get(role)
     }
-    why_not = explain_no_character(body, skeleton)
+    why_not = explain_no_fit(body, skeleton)
     return CharacterFile(name, body.morphs, find_held_meshes(body), why_not, roles)
 
 

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion import rotation
+from metagraph.motion.fitting.bind import bind_pose
+from metagraph.motion.fitting.fit import Fit
+from metagraph.motion.fitting.footing import Footing
 from metagraph.motion.joint_map import SIDES
 from metagraph.motion.skeleton import Skeleton
-from preview.default_body.bind import bind_pose
-from preview.default_body.fit import Fit, read_sculpture
-from preview.default_body.footing import Footing
+from preview.default_body.sculpture import read_sculpture
 from preview.figure import MeshFigure, SkinnedFigure
 from preview.levels import make_levels
 from preview.mesh import VERTEX, SkinnedMesh, TriangleBatch
@@ -58,7 +59,7 @@ class DefaultBody(MeshFigure):
         bind = bind_pose(skeleton, read_sculpture().at, footing)
         if isinstance(bind, str):
             raise ValueError(bind)
-        fit = Fit(skeleton, bind, None if footing is None else footing.ankle)
+        fit = Fit(skeleton, bind, read_sculpture(), None if footing is None else footing.ankle)
         carriers, weights = fit.slots()
         halves, twists, weights = _with_halves(carriers, weights, fit)
         self._twisted = tuple(np.array([getattr(h, end) for h in twists]) for end in ("upper", "lower"))

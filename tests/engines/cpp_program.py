@@ -87,7 +87,7 @@ MUTANTS = [
     ("items.hpp", "speech->priority < last->priority", "false", "quiet: words that are said"),
     ("hearing.hpp", "bool turns = holds6;", "bool turns = false;", "sparse: modes asked for live"),
     ("meaning.hpp", "at + *inner->at", "at", "stick: lines"),
-    ("sampling.hpp", "this->track->stays_at(this->graph->layer, now)", "false", "sparse: arms: to stay"),
+    ("directing.hpp", "state->track->stays_at(state->graph->layer, now)", "false", "sparse: arms: to stay"),
 ]  # fmt: skip
 
 

@@ -23,9 +23,11 @@ from metagraph.playback.life import evaluate, gaze, solve
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning import (
     choice,
+    drawing,
     hashing,
     markov,
     replan,
+    routes,
     sampling,
 )
 from metagraph.playback.posing import layers
@@ -158,8 +160,8 @@ MUTATIONS: dict[str, tuple[Any, str, Any]] = {
         lambda layer, data: data.weights,
     ),
     "the hash of draws": (choice, "keyed", _broken_keyed),
-    "the counter of uses": (sampling.Performer, "_count", lambda self, ident, now: 0.0),
-    "never twice and spacing": (sampling.Performer, "_spaced", lambda self, candidates: candidates),
+    "the counter of uses": (drawing, "count_uses", lambda state, ident, now: 0.0),
+    "never twice and spacing": (drawing, "keep_spaced", lambda state, candidates: candidates),
     "the loop's seam": (
         layers,
         "compute_loop_seconds",
@@ -167,8 +169,8 @@ MUTATIONS: dict[str, tuple[Any, str, Any]] = {
     ),
     "leading a clip in from its stance": (layers, "_lead", lambda shown, stance, edge, weight: shown),
     "crossfading a clip in from afar": (layers, "FADE_BEYOND", 0.0),
-    "the cooldown": (sampling.Performer, "_cooled", lambda self, action: float("-inf")),
-    "the shortest chain": (sampling.Performer, "_chain", lambda self, goal: []),
+    "the cooldown": (sampling, "find_cooled", lambda state, action: float("-inf")),
+    "the shortest chain": (routes, "find_hops", lambda state, goal: []),
     "how late a request may start": (replan, "delay", lambda asked, free, settings: (list(asked), [])),
     "lengths of the models": (markov, "length", lambda chain, state, key: 2.0),
     "a breath's shape": (evaluate, "compute_breath", lambda lane, life, time: 0.0),

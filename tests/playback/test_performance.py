@@ -15,9 +15,9 @@ from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.motion import rotation
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.planning import sampling
+from metagraph.playback.planning import drawing, sampling
+from metagraph.playback.planning.layer_state import LayerState
 from metagraph.playback.planning.mood import Mood
-from metagraph.playback.planning.sampling import Performer
 from metagraph.research.exhibits.paper_planner import plan_as_in_paper
 from tests.posing import pose_at, rig
 
@@ -36,7 +36,7 @@ class Performance:
 
 @pytest.fixture(scope="module")
 def performances(sample: Project) -> list[Performance]:
-    choose, draw = sampling.pick, Performer._draw
+    choose, draw = drawing.pick, sampling.draw_action
     made = []
     for seed in SEEDS:
         draws: list[tuple[str, Mapping[str, float], str]] = []
@@ -48,22 +48,22 @@ def performances(sample: Project) -> list[Performance]:
             return chosen
 
         def watch_all(
-            self: Performer,
+            state: LayerState,
             candidates: list[Action],
             key: str,
             now: float,
             mood: Mood,
             draws: Any = draws,
         ) -> Action:
-            left = self._spaced(candidates)
+            left = drawing.keep_spaced(state, candidates)
             if len(left) == 1:  # which is not drawn for
-                weight = left[0].likelihood / max(self._count(left[0].id, now), 1)
+                weight = left[0].likelihood / max(drawing.count_uses(state, left[0].id, now), 1)
                 draws.append((key, {left[0].id: weight}, left[0].id))
-            return draw(self, candidates, key, now, mood)
+            return draw(state, candidates, key, now, mood)
 
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(sampling, "pick", watch)
-            patch.setattr(Performer, "_draw", watch_all)
+            patch.setattr(drawing, "pick", watch)
+            patch.setattr(sampling, "draw_action", watch_all)
             made.append(Performance(make_plan(plan_as_in_paper(sample), LENGTH, seed=seed), draws))
     return made
 

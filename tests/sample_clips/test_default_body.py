@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from preview.default_body.fit import read_sculpture
+from preview.default_body.sculpture import read_sculpture
 from sample_clips.make.default_body import make
 from sample_clips.make.default_body.forms import whole
 from sample_clips.make.default_body.joints import default_skeleton

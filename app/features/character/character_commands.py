@@ -24,7 +24,6 @@ from app.shell.places import PanelPlaces
 from app.shell.workspace_keeper import Workspaces
 from app.stage.navigation import NAVIGATIONS, choose_navigation, get_navigation
 from app.translation import tr, tr_noop
-from metagraph.graph import edits
 
 if TYPE_CHECKING:
     from app.features.character.own_window import OwnWindow
@@ -67,7 +66,9 @@ class CharacterFeature(Feature):
     # --- which character
 
     def choose_character(self) -> None:
-        character_choice.choose_character(self.shell)
+        from app.features.character.character_gallery import CharacterGallery
+
+        CharacterGallery(self.shell).show()
 
     def show_meshes(self) -> None:
         from app.features.character.meshes_dialog import MeshesDialog
@@ -75,7 +76,7 @@ class CharacterFeature(Feature):
         MeshesDialog(self.document, self.stage.figures, self.shell.widget).show()
 
     def draw_default_body(self) -> None:
-        self.document.edit(tr("Draw the default body"), lambda p: edits.set_character(p, None))
+        character_choice.draw_default_body(self.shell)
 
     # --- transport
 
@@ -227,7 +228,7 @@ COMMANDS = (
         "character",
         tr_noop("Choose &character…"),
         CharacterFeature.choose_character,
-        tip=tr_noop("Choose a GLB, glTF or VRM file with the character's mesh"),
+        tip=tr_noop("Choose who is drawn: Ada, Ben, the default body or a GLB, glTF or VRM file of yours"),
     ),
     Command(
         "meshes",

@@ -36,7 +36,7 @@ class NoMesh(QFrame):
             QToolButton,
             self,
             text=tr("Choose character…"),
-            toolTip=tr("Choose a GLB, glTF or VRM file with the character's mesh"),
+            toolTip=tr("Choose who is drawn: Ada, Ben, the default body or a GLB, glTF or VRM file of yours"),
         )
         self.button.setAccessibleName(tr("Choose character"))
         self.button.setFocusPolicy(Qt.FocusPolicy.TabFocus)

@@ -83,6 +83,8 @@ class ImportLine(QToolBar):
         fresh = not result.failures and not result.apart and unlabelled
         if not fresh and not result.failures and words == describe_imported(result):
             return
+        if fresh and self.importing.guided and words == describe_imported(result):
+            return
         if fresh:
             words = f"{tr_phrase(words)}. {tr(NEXT)}"
             self._offer(tr("Label clips…"), lambda: self._do("propose"))

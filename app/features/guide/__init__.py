@@ -39,10 +39,15 @@ class GuideFeature(Feature):
             window = self.shell.widget
             self.line = GuideLine(self.document, self.session, self.find_part, self.take_samples, window)
             self.line.turned.connect(self.shell.show)
+            self.line.left.connect(self._leave)
             window.addToolBarBreak(Qt.ToolBarArea.BottomToolBarArea)  # below the line of an import
             window.addToolBar(Qt.ToolBarArea.BottomToolBarArea, self.line)
             self.document.exported.connect(self.line.notice_export)
+        self.shell.services[Importing].guided = True
         self.line.begin()
+
+    def _leave(self) -> None:
+        self.shell.services[Importing].guided = False
 
     def find_part(self, panel: str) -> QWidget | None:
         """Return the panel of an id; for "" the button that exports."""

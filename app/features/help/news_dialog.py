@@ -59,7 +59,7 @@ class NewsDialog(QDialog):
         self.look.clicked.connect(self.look_now)
         self.page = QPushButton(tr("Open its page"), self)
         self.page.setAutoDefault(False)
-        self.page.clicked.connect(lambda: QDesktopServices.openUrl(QUrl(self._url)))
+        self.page.clicked.connect(self._open_page)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
         buttons.rejected.connect(self.reject)
         row = QHBoxLayout()
@@ -90,6 +90,10 @@ class NewsDialog(QDialog):
         self.said.setText(
             "" if there else tr("This copy of Metagraph does not know where to look for updates.")
         )
+
+    def _open_page(self) -> None:
+        if not QDesktopServices.openUrl(QUrl(self._url)):
+            self.said.setText(tr("No browser opened. The address is {address}.").format(address=self._url))
 
     def _choose(self, on: bool) -> None:
         self.settings.setValue(ALLOWED, "true" if on else "false")

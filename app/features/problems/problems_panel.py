@@ -256,7 +256,8 @@ class ProblemsPanel(QWidget):
         fix = self.fixes.get(problem)
         message, remedy = tr_phrase(problem.message), tr_phrase(problem.remedy)
         item = QTreeWidgetItem([message, place, remedy, fix.words if fix is not None else ""])
-        item.setIcon(0, icons.make_icon("warning", colors[problem.severity]))
+        sign = "hint" if problem.severity == "hint" else "warning"
+        item.setIcon(0, icons.make_icon(sign, colors[problem.severity]))
         item.setForeground(0, QColor(text if problem.severity != "hint" else colors["hint"]))
         item.setToolTip(0, f"{tr(problem.severity)}: {message}. {remedy}")
         if fix is not None:

@@ -159,12 +159,17 @@ class RenderDialog(QDialog):
         self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
         self.show_button = self.buttons.addButton(tr("Open folder"), QDialogButtonBox.ButtonRole.ActionRole)
         self.show_button.setEnabled(False)
-        self.show_button.clicked.connect(lambda: open_folder(Path(self.file.text()).parent))
+        self.show_button.clicked.connect(self._show_folder)
         self.go = self.buttons.addButton(tr("Write"), QDialogButtonBox.ButtonRole.AcceptRole)
         strengthen(self.go)
         self.buttons.accepted.connect(self._write)
         self.buttons.rejected.connect(self.reject)
         layout.addWidget(self.buttons)
+
+    def _show_folder(self) -> None:
+        folder = Path(self.file.text()).parent
+        if not open_folder(folder):
+            self.words.setText(tr("No program opened. The folder is {folder}.").format(folder=folder))
 
     def _suffixed(self) -> None:
         """Show what belongs to the chosen kind of file."""

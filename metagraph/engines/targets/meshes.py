@@ -9,6 +9,5 @@ from metagraph.motion.character_mesh import CharacterMesh
 
 def find_ordered_mesh(order: ExportOrder) -> tuple[CharacterMesh | None, tuple[str, ...]]:
     """Return the mesh that goes with an order, and what there is to say about it. Raises FileError."""
-    assert order.project.skeleton is not None
-    body, notes = place_mesh_on(order.project.skeleton, order.contents.character, order.project.hidden)
+    body, notes = place_mesh_on(order.project, order.contents.character)
     return body, tuple(notes)

@@ -24,9 +24,11 @@ from metagraph.playback.plan import (
 from metagraph.playback.planning import markov
 from metagraph.playback.planning.cue_shapes import FITS
 from metagraph.playback.planning.hashing import Bits
+from metagraph.playback.planning.layer_state import LayerState
+from metagraph.playback.planning.leaving import make_way
 from metagraph.playback.planning.mood import Moods, changed, mood_at, tempo
 from metagraph.playback.planning.replan import delay, replan
-from metagraph.playback.planning.sampling import Performer, performer_after
+from metagraph.playback.planning.sampling import begin_layer, perform_metas, resume_layer, vary_rests
 
 WINDOW = 1.0  # seconds a request may use when it does not say how long
 
@@ -41,7 +43,7 @@ class LayerDraft:
     """
 
     layer: Layer
-    performer: Performer
+    state: LayerState
     able: bool
     done: list[MetaAction]
     placed: list[MetaAction]
@@ -55,11 +57,11 @@ class LayerDraft:
         cues: list[Cue] = []
         rests: list[Rest] = []
         if self.able:
-            self.performer.perform(metas, end)
-            self.performer.vary_rests(end)
-            cues = self.performer.cues
-            rests = self.performer.rests
-            self.reports.extend(self.performer.reports)
+            perform_metas(self.state, metas, end)
+            vary_rests(self.state, end)
+            cues = self.state.cues
+            rests = self.state.rests
+            self.reports.extend(self.state.reports)
         every = (*self.done, *self.placed)
         return LayerPlan(
             self.layer, every, tuple(cues), tuple(rests), self.past, self.cursor, tuple(self.written)
@@ -138,32 +140,32 @@ def draft(
         )
     ]
     begin = _begin(graph, old, stance)
-    performer = performer_after(project, graph, seed, begin, old.past, kept, moods, track)
-    performer.model = chain
-    if begin == "" or not performer.begin(begin):
+    state = resume_layer(project, graph, seed, begin, old.past, kept, moods, track)
+    state.model = chain
+    if begin == "" or not begin_layer(state, begin):
         why = f"the {layer} layer has no stance with a loop to begin in"
         waits = [*future, *asked]
         for meta in waits:
             if not meta.written:
                 reports.append(Report(meta.request.id, "no-stance", why, layer, meta.start))
-        return LayerDraft(layer, performer, False, done, waits, reports, old.past, cursor, written)
-    performer.begun = _begun(old, len(kept))
+        return LayerDraft(layer, state, False, done, waits, reports, old.past, cursor, written)
+    state.begun = _begun(old, len(kept))
     if len(kept) > 0 and kept[-1].end > now:
         running = next((meta for meta in old.metas if meta.key == kept[-1].meta), None)
         leaves = _leaves(running, stopped, track, now)
-        performer.make_way(running, asked, now, leaves)
+        make_way(state, running, asked, now, leaves)
     if len(old.rests) > 0 and now > 0:
-        begun = {cue.end - cue.blend_out for cue in performer.cues}
-        performer.rests = [rest for rest in old.rests if rest.fade_start < now or rest.start in begun]
-    performer.free = max(now - (performer.ready - performer.free), performer.free)
-    asked, delayed = delay(asked, performer.ready, project.settings)
+        begun = {cue.end - cue.blend_out for cue in state.cues}
+        state.rests = [rest for rest in old.rests if rest.fade_start < now or rest.start in begun]
+    state.free = max(now - (state.ready - state.free), state.free)
+    asked, delayed = delay(asked, state.ready, project.settings)
     busy = float("-inf")  # what runs keeps the time it was wanted for, from the models
     for meta in done:
         if not meta.written:
             busy = max(busy, meta.end)
     placed, moved = replan([*future, *written, *asked], project.settings, busy)
     every = [*reports, *delayed, *moved]
-    return LayerDraft(layer, performer, True, done, placed, every, old.past, cursor, written)
+    return LayerDraft(layer, state, True, done, placed, every, old.past, cursor, written)
 
 
 def _leaves(running: MetaAction | None, stopped: AbstractSet[str], track: Track, now: float) -> bool:

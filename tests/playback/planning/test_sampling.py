@@ -17,9 +17,11 @@ from metagraph.graph.model import Project
 from metagraph.playback.life.track import Track
 from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.planning import sampling as pick_module
+from metagraph.playback.planning import drawing
+from metagraph.playback.planning.layer_state import LayerState
 from metagraph.playback.planning.mood import Moods
 from metagraph.playback.planning.running_plan import improvise
+from metagraph.playback.planning.sampling import perform_metas
 
 
 @pytest.fixture
@@ -115,7 +117,7 @@ def test_the_chance_is_likelihood_over_uses(
     project = edits.update_actions(project, [toy.id(project, "rest long")], likelihood=2.5)
     project = edits.set_settings(project, never_twice=False, variety=0.0)
     drawn: list[tuple[Mapping[str, float], str]] = []
-    choose = pick_module.pick
+    choose = drawing.pick
 
     def watch(seed: int, key: str, purpose: str, weights: Mapping[str, float]) -> str:
         chosen = choose(seed, key, purpose, weights)
@@ -123,7 +125,7 @@ def test_the_chance_is_likelihood_over_uses(
             drawn.append((dict(weights), chosen))
         return chosen
 
-    monkeypatch.setattr(pick_module, "pick", watch)
+    monkeypatch.setattr(drawing, "pick", watch)
     arms(project, *(ask(f"r{n}", n * 3.0) for n in range(60)), end=200)
     assert len(drawn) == 60
     uses: Counter[str] = Counter()
@@ -367,14 +369,12 @@ def test_what_the_model_writes_takes_what_there_is(toy: Any) -> None:
     request = MetaRequest(
         "auto/arms/0", "arms", "gesture", 0.0, 1.0, limb="left", tags=("positive",), priority=0
     )
-    performer = pick_module.Performer(
-        project, project.graphs["arms"], 1, toy.id(project, "rest"), Moods(), Track()
-    )
-    performer.perform([MetaAction(request, 0, 1, written=True)], 10)
-    assert [c.action.name for c in performer.cues] == ["rest short"], "the tag weighs more than the limb"
-    performer.perform([MetaAction(request, 5, 6, written=True)], 10)
-    assert performer.cues[1].action.name != "rest short", "but not so much as to play it twice in a row"
-    assert performer.reports == []
+    state = LayerState(project, project.graphs["arms"], 1, toy.id(project, "rest"), Moods(), Track())
+    perform_metas(state, [MetaAction(request, 0, 1, written=True)], 10)
+    assert [c.action.name for c in state.cues] == ["rest short"], "the tag weighs more than the limb"
+    perform_metas(state, [MetaAction(request, 5, 6, written=True)], 10)
+    assert state.cues[1].action.name != "rest short", "but not so much as to play it twice in a row"
+    assert state.reports == []
 
 
 # --- rests

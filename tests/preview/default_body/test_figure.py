@@ -12,11 +12,11 @@ import pytest
 from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
+from metagraph.motion.fitting.footing import find_footing
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 from preview.default_body.figure import DefaultBody
-from preview.default_body.fit import read_sculpture
-from preview.default_body.footing import find_footing
+from preview.default_body.sculpture import read_sculpture
 from preview.figure import StickFigure
 from preview.scene import DARK, LIGHT, Scene
 from tests import zoo

@@ -8,6 +8,8 @@
 #include "track.hpp"
 #include "meta_plan.hpp"
 #include "cue_shapes.hpp"
+#include "layer_state.hpp"
+#include "leaving.hpp"
 #include "markov.hpp"
 #include "mood.hpp"
 #include "replan.hpp"
@@ -62,7 +64,7 @@ inline std::string _begin(
 /// in order; those that a model wrote are performed as the mode says. reports: the reports so far.
 struct LayerDraft {
     std::string layer;
-    Ref<Performer> performer;
+    Ref<LayerState> state;
     bool able;
     List<Ref<MetaAction>> done;
     List<Ref<MetaAction>> placed;
@@ -73,7 +75,7 @@ struct LayerDraft {
 
     LayerDraft(
         std::string layer_,
-        Ref<Performer> performer_,
+        Ref<LayerState> state_,
         bool able_,
         List<Ref<MetaAction>> done_,
         List<Ref<MetaAction>> placed_,
@@ -83,7 +85,7 @@ struct LayerDraft {
         List<Ref<MetaAction>> written_
     )
         : layer(std::move(layer_)),
-            performer(std::move(performer_)),
+            state(std::move(state_)),
             able(able_),
             done(std::move(done_)),
             placed(std::move(placed_)),
@@ -100,11 +102,11 @@ inline Ref<LayerPlan> LayerDraft::performed(const List<Ref<MetaAction>>& metas, 
     List<Ref<Cue>> cues;
     List<Ref<Rest>> rests;
     if (this->able) {
-        this->performer->perform(metas, end);
-        this->performer->vary_rests(end);
-        cues = this->performer->cues;
-        rests = this->performer->rests;
-        lang::extend(this->reports, this->performer->reports);
+        sampling::perform_metas(this->state, metas, end);
+        sampling::vary_rests(this->state, end);
+        cues = this->state->cues;
+        rests = this->state->rests;
+        lang::extend(this->reports, this->state->reports);
     }
     List<Ref<MetaAction>> every = lang::together(this->done, this->placed);
     return lang::made<LayerPlan>(this->layer, every, cues, rests, this->past, this->cursor, this->written);
@@ -222,9 +224,9 @@ inline Ref<LayerDraft> draft(
         }
     }
     std::string begin = layer_planning::_begin(graph, old, stance);
-    Ref<Performer> performer = sampling::performer_after(project, graph, seed, begin, old->past, kept, moods, track);
-    performer->model = chain;
-    if (begin == "" || !performer->begin(begin)) {
+    Ref<LayerState> state = sampling::resume_layer(project, graph, seed, begin, old->past, kept, moods, track);
+    state->model = chain;
+    if (begin == "" || !sampling::begin_layer(state, begin)) {
         std::string why = lang::text("the ", layer, " layer has no stance with a loop to begin in");
         List<Ref<MetaAction>> waits = lang::together(future, asked);
         for (const auto& meta : waits) {
@@ -232,9 +234,9 @@ inline Ref<LayerDraft> draft(
                 reports.push_back(lang::made<Report>(meta->request->id, "no-stance", why, layer, meta->start));
             }
         }
-        return lang::made<LayerDraft>(layer, performer, false, done, waits, reports, old->past, cursor, written);
+        return lang::made<LayerDraft>(layer, state, false, done, waits, reports, old->past, cursor, written);
     }
-    performer->begun = layer_planning::_begun(old, lang::len(kept));
+    state->begun = layer_planning::_begun(old, lang::len(kept));
     if (lang::len(kept) > 0 && lang::at(kept, -1)->end > now) {
         Ref<MetaAction> first;
         for (const auto& meta3 : old->metas) {
@@ -245,11 +247,11 @@ inline Ref<LayerDraft> draft(
         }
         Ref<MetaAction> running = first;
         bool leaves = layer_planning::_leaves(running, stopped, track, now);
-        performer->make_way(running, asked, now, leaves);
+        leaving::make_way(state, running, asked, now, leaves);
     }
     if (lang::len(old->rests) > 0 && now > 0) {
         Set<double> begun;
-        for (const auto& cue : performer->cues) {
+        for (const auto& cue : state->cues) {
             begun.insert(cue->end - cue->blend_out);
         }
         List<Ref<Rest>> found;
@@ -258,11 +260,11 @@ inline Ref<LayerDraft> draft(
                 found.push_back(rest);
             }
         }
-        performer->rests = found;
+        state->rests = found;
     }
-    performer->free = std::max(now - (performer->ready() - performer->free), performer->free);
+    state->free = std::max(now - (state->ready() - state->free), state->free);
     List<Ref<Report>> delayed{};
-    std::tie(asked, delayed) = replan::delay(asked, performer->ready(), project->settings);
+    std::tie(asked, delayed) = replan::delay(asked, state->ready(), project->settings);
     double busy = -INFINITY; // what runs keeps the time it was wanted for, from the models
     for (const auto& meta : done) {
         if (!meta->written) {
@@ -271,7 +273,7 @@ inline Ref<LayerDraft> draft(
     }
     auto [placed, moved] = replan::replan(lang::together(future, written, asked), project->settings, busy);
     List<Ref<Report>> every = lang::together(reports, delayed, moved);
-    return lang::made<LayerDraft>(layer, performer, true, done, placed, every, old->past, cursor, written);
+    return lang::made<LayerDraft>(layer, state, true, done, placed, every, old->past, cursor, written);
 }
 
 /// Return whether the running action is left: it was stopped, or it is a gesture of the character's own and what it

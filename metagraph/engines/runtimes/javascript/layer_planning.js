@@ -7,10 +7,11 @@
 
 import { LayerPlan, MetaAction, Report, TEMPORAL } from "./meta_plan.js";
 import { FITS } from "./cue_shapes.js";
+import { makeWay } from "./leaving.js";
 import { write } from "./markov.js";
 import { changed, moodAt, tempo } from "./mood.js";
 import { delay, replan } from "./replan.js";
-import { performerAfter } from "./sampling.js";
+import { beginLayer, performMetas, resumeLayer, varyRests } from "./sampling.js";
 import { but } from "./basics.js";
 
 export const WINDOW = 1; // seconds a request may use when it does not say how long
@@ -21,13 +22,13 @@ export const WINDOW = 1; // seconds a request may use when it does not say how l
  * able: whether the layer can perform at all. done: meta actions that were performed before. placed: those to perform, in
  * order; those that a model wrote are performed as the mode says. reports: the reports so far.
  *
- * layer: string; performer: Performer; able: boolean; done: MetaAction[]; placed: MetaAction[]; reports: Report[]; past:
- * Past; cursor: Cursor; written: MetaAction[].
+ * layer: string; state: LayerState; able: boolean; done: MetaAction[]; placed: MetaAction[]; reports: Report[]; past: Past;
+ * cursor: Cursor; written: MetaAction[].
  */
 export class LayerDraft {
-  constructor(layer, performer, able, done, placed, reports, past, cursor, written) {
+  constructor(layer, state, able, done, placed, reports, past, cursor, written) {
     this.layer = layer;
-    this.performer = performer;
+    this.state = state;
     this.able = able;
     this.done = done;
     this.placed = placed;
@@ -42,11 +43,11 @@ export class LayerDraft {
     let cues = [];
     let rests = [];
     if (this.able) {
-      this.performer.perform(metas, end);
-      this.performer.varyRests(end);
-      cues = this.performer.cues;
-      rests = this.performer.rests;
-      this.reports.push(...this.performer.reports);
+      performMetas(this.state, metas, end);
+      varyRests(this.state, end);
+      cues = this.state.cues;
+      rests = this.state.rests;
+      this.reports.push(...this.state.reports);
     }
     const every = [...this.done, ...this.placed];
     return new LayerPlan(this.layer, every, [...cues], [...rests], this.past, this.cursor, [...this.written]);
@@ -144,9 +145,9 @@ export function draft(
       && ((TEMPORAL.has(report.outcome) && !judged.has(report.request))
         || !(planned.get(report.request) ?? []).includes(report.at)));
   const begin = _begin(graph, old, stance);
-  const performer = performerAfter(project, graph, seed, begin, old.past, kept, moods, track);
-  performer.model = chain;
-  if (begin === "" || !performer.begin(begin)) {
+  const state = resumeLayer(project, graph, seed, begin, old.past, kept, moods, track);
+  state.model = chain;
+  if (begin === "" || !beginLayer(state, begin)) {
     const why = `the ${layer} layer has no stance with a loop to begin in`;
     const waits = [...future, ...asked];
     for (const meta of waits) {
@@ -154,21 +155,21 @@ export function draft(
         reports.push(new Report(meta.request.id, "no-stance", why, layer, meta.start));
       }
     }
-    return new LayerDraft(layer, performer, false, done, waits, reports, old.past, cursor, written);
+    return new LayerDraft(layer, state, false, done, waits, reports, old.past, cursor, written);
   }
-  performer.begun = _begun(old, kept.length);
+  state.begun = _begun(old, kept.length);
   if (kept.length > 0 && kept[kept.length - 1].end > now) {
     const running = old.metas.find((meta) => meta.key === kept[kept.length - 1].meta) ?? null;
     const leaves = _leaves(running, stopped, track, now);
-    performer.makeWay(running, asked, now, leaves);
+    makeWay(state, running, asked, now, leaves);
   }
   if (old.rests.length > 0 && now > 0) {
-    const begun = new Set(performer.cues.map((cue) => cue.end - cue.blendOut));
-    performer.rests = old.rests.filter((rest) => rest.fadeStart < now || begun.has(rest.start));
+    const begun = new Set(state.cues.map((cue) => cue.end - cue.blendOut));
+    state.rests = old.rests.filter((rest) => rest.fadeStart < now || begun.has(rest.start));
   }
-  performer.free = Math.max(now - (performer.ready - performer.free), performer.free);
+  state.free = Math.max(now - (state.ready - state.free), state.free);
   let delayed;
-  ({ 0: asked, 1: delayed } = delay(asked, performer.ready, project.settings));
+  ({ 0: asked, 1: delayed } = delay(asked, state.ready, project.settings));
   let busy = -Infinity; // what runs keeps the time it was wanted for, from the models
   for (const meta of done) {
     if (!meta.written) {
@@ -177,7 +178,7 @@ export function draft(
   }
   const { 0: placed, 1: moved } = replan([...future, ...written, ...asked], project.settings, busy);
   const every = [...reports, ...delayed, ...moved];
-  return new LayerDraft(layer, performer, true, done, placed, every, old.past, cursor, written);
+  return new LayerDraft(layer, state, true, done, placed, every, old.past, cursor, written);
 }
 
 /**

@@ -37,7 +37,7 @@ def shown(drive):
 def test_a_stand_in_is_drawn_as_the_default_body_and_a_button_in_the_view_asks_for_a_character(
     drive, scene, monkeypatch
 ):
-    from app.features.character import character_choice
+    from app.features.character import character_gallery
 
     drive.importing.import_paths([str(scene / "proxy.glb")])
     drive.wait(lambda: isinstance(shown(drive), DefaultBody))
@@ -45,10 +45,10 @@ def test_a_stand_in_is_drawn_as_the_default_body_and_a_button_in_the_view_asks_f
     drive.wait(lambda: over.isVisible() and over.height() >= over.button.height() > 10)
     assert over.parentWidget().rect().contains(over.geometry())
     assert drive.document.project.character is None
-    asked = []
-    monkeypatch.setattr(character_choice, "choose_character", asked.append)
     QTest.mouseClick(over.button, Qt.MouseButton.LeftButton)
-    assert len(asked) == 1
+    gallery = drive.window.findChild(character_gallery.CharacterGallery)
+    assert gallery is not None and gallery.isVisible()
+    gallery.reject()
     drive.document.edit("Choose", lambda p: replace(p, character=str(scene / "proxy.glb")))
     drive.wait(lambda: "1 triangle, a stand-in" in over.words.text())
     drive.document.edit("Choose", lambda p: replace(p, character=str(scene / "whole.glb")))

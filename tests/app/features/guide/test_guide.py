@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from PySide6.QtWidgets import QDialog
 
+from app.features.files.import_line import ImportLine
 from app.features.guide.guide_line import GuideLine
 from app.features.guide.guide_steps import CLIPS, STEPS, WORDS, Seen, find_step
 from metagraph.graph import edits
@@ -43,6 +44,7 @@ def test_it_leads_from_an_empty_window_to_an_export(drive):
     drive.wait(lambda: guide.words.text() == WORDS["stance"])
     assert len(drive.document.project.clips) == 3
     drive.wait(guide.frame.isVisible)
+    assert not drive.window.findChild(ImportLine).isVisible(), "one line says what comes next"
     drive.session.selection.select_clips((clip(drive, "stance"),))
     drive.do("label_stance")
     drive.wait(lambda: guide.words.text() == WORDS["gesture"])

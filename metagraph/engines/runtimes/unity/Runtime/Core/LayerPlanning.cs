@@ -14,7 +14,7 @@ namespace Metagraph
     public sealed class LayerDraft
     {
         public string Layer;
-        public Performer Performer;
+        public LayerState State;
         public bool Able;
         public List<MetaAction> Done;
         public List<MetaAction> Placed;
@@ -25,7 +25,7 @@ namespace Metagraph
 
         public LayerDraft(
             string layer,
-            Performer performer,
+            LayerState state,
             bool able,
             List<MetaAction> done,
             List<MetaAction> placed,
@@ -36,7 +36,7 @@ namespace Metagraph
         )
         {
             Layer = layer;
-            Performer = performer;
+            State = state;
             Able = able;
             Done = done;
             Placed = placed;
@@ -53,11 +53,11 @@ namespace Metagraph
             var rests = new List<Rest>();
             if (Able)
             {
-                Performer.Perform(metas, end);
-                Performer.VaryRests(end);
-                cues = Performer.Cues;
-                rests = Performer.Rests;
-                Reports.AddRange(Performer.Reports);
+                SamplingRules.PerformMetas(State, metas, end);
+                SamplingRules.VaryRests(State, end);
+                cues = State.Cues;
+                rests = State.Rests;
+                Reports.AddRange(State.Reports);
             }
             var every = Done.Concat(Placed).ToList();
             return new LayerPlan(Layer, every, cues.ToList(), rests.ToList(), Past, Cursor, Written.ToList());
@@ -151,9 +151,9 @@ namespace Metagraph
                 && ((MetaPlanRules.Temporal.Contains(report.Outcome) && !judged.Contains(report.Request))
                     || !PlainMaps.GetOr(planned, report.Request, new List<double>()).Contains(report.At))).ToList();
             var begin = Begin(graph, old, stance);
-            var performer = SamplingRules.PerformerAfter(project, graph, seed, begin, old.Past, kept, moods, track);
-            performer.Model = chain;
-            if (begin == "" || !performer.Begin(begin))
+            var state = SamplingRules.ResumeLayer(project, graph, seed, begin, old.Past, kept, moods, track);
+            state.Model = chain;
+            if (begin == "" || !SamplingRules.BeginLayer(state, begin))
             {
                 var why = "the " + layer + " layer has no stance with a loop to begin in";
                 var waits = future.Concat(asked).ToList();
@@ -164,23 +164,23 @@ namespace Metagraph
                         reports.Add(new Report(meta.Request.Id, "no-stance", why, layer, meta.Start));
                     }
                 }
-                return new LayerDraft(layer, performer, false, done, waits, reports, old.Past, cursor, written);
+                return new LayerDraft(layer, state, false, done, waits, reports, old.Past, cursor, written);
             }
-            performer.Begun = Begun(old, kept.Count);
+            state.Begun = Begun(old, kept.Count);
             if (kept.Count > 0 && kept[kept.Count - 1].End > now)
             {
                 var running = old.Metas.Where(meta => meta.Key == kept[kept.Count - 1].Meta).FirstOrDefault();
                 var leaves = Leaves(running, stopped, track, now);
-                performer.MakeWay(running, asked, now, leaves);
+                LeavingRules.MakeWay(state, running, asked, now, leaves);
             }
             if (old.Rests.Count > 0 && now > 0)
             {
-                var begun = new HashSet<double>(performer.Cues.Select(cue => cue.End - cue.BlendOut));
-                performer.Rests = old.Rests.Where(rest => rest.FadeStart < now || begun.Contains(rest.Start)).ToList();
+                var begun = new HashSet<double>(state.Cues.Select(cue => cue.End - cue.BlendOut));
+                state.Rests = old.Rests.Where(rest => rest.FadeStart < now || begun.Contains(rest.Start)).ToList();
             }
-            performer.Free = Math.Max(now - (performer.Ready - performer.Free), performer.Free);
+            state.Free = Math.Max(now - (state.Ready - state.Free), state.Free);
             List<Report> delayed = default(List<Report>);
-            var found2 = ReplanRules.Delay(asked, performer.Ready, project.Settings);
+            var found2 = ReplanRules.Delay(asked, state.Ready, project.Settings);
             asked = found2.Item1;
             delayed = found2.Item2;
             var busy = double.NegativeInfinity; // what runs keeps the time it was wanted for, from the models
@@ -195,7 +195,7 @@ namespace Metagraph
             List<MetaAction> placed = found3.Item1;
             List<Report> moved = found3.Item2;
             var every = reports.Concat(delayed).Concat(moved).ToList();
-            return new LayerDraft(layer, performer, true, done, placed, every, old.Past, cursor, written);
+            return new LayerDraft(layer, state, true, done, placed, every, old.Past, cursor, written);
         }
 
         /// <summary>

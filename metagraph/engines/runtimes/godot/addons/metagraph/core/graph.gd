@@ -45,6 +45,7 @@ var name = ""  # of the project
 var points = {}  # name -> Vector3
 var spots = {}  # name -> [x, y, z], as the export has them
 var lines = {}
+var parameters = {}  # what games set, by name, see parameters.gd
 var voices = {}  # line -> voice, see voice.gd
 var said = {}  # voices made from letters, by text and length
 var still_frame = {turns = [], shifts = {}}  # the base pose, as a clip's frame
@@ -72,18 +73,19 @@ func _read(json, bytes):
 	var wrong = Check.wrong(data)
 	if wrong != "":
 		return wrong + "; export it again"
-	for name in PLANNER_USUAL:
-		settings[name] = float(data.planner.get(name, PLANNER_USUAL[name]))
-	for name in Check.PLANNER:
-		settings[name] = data.planner[name]
+	for field in PLANNER_USUAL:
+		settings[field] = float(data.planner.get(field, PLANNER_USUAL[field]))
+	for field in Check.PLANNER:
+		settings[field] = data.planner[field]
 	settings.seed32 = int(data.planner["seed"])
 	_read_skeleton(data)
 	life = Life.life_of(data.life)
 	name = str(data.get("name", ""))
 	lines = data.lines
+	parameters = data.parameters
 	spots = data.points
-	for name in data.points:
-		points[name] = Util.vector(data.points[name])
+	for point in data.points:
+		points[point] = Util.vector(data.points[point])
 	for line in data.voices:
 		voices[line] = data.voices[line]
 	for layer in Util.LAYERS:

@@ -5,6 +5,7 @@
 
 const MetaPlan = preload("meta_plan.gd")
 const CueShapes = preload("cue_shapes.gd")
+const Leaving = preload("leaving.gd")
 const Markov = preload("markov.gd")
 const Mood = preload("mood.gd")
 const Replan = preload("replan.gd")
@@ -19,7 +20,7 @@ const WINDOW = 1.0  # seconds a request may use when it does not say how long
 # those that a model wrote are performed as the mode says. reports: the reports so far.
 class LayerDraft:
 	var layer
-	var performer
+	var state
 	var able
 	var done
 	var placed
@@ -28,9 +29,9 @@ class LayerDraft:
 	var cursor
 	var written
 
-	func _init(layer_, performer_, able_, done_, placed_, reports_, past_, cursor_, written_):
+	func _init(layer_, state_, able_, done_, placed_, reports_, past_, cursor_, written_):
 		self.layer = layer_
-		self.performer = performer_
+		self.state = state_
 		self.able = able_
 		self.done = done_
 		self.placed = placed_
@@ -44,11 +45,11 @@ class LayerDraft:
 		var cues = []
 		var rests = []
 		if self.able:
-			self.performer.perform(metas, end)
-			self.performer.vary_rests(end)
-			cues = self.performer.cues
-			rests = self.performer.rests
-			Util.extend(self.reports, self.performer.reports)
+			Sampling.perform_metas(self.state, metas, end)
+			Sampling.vary_rests(self.state, end)
+			cues = self.state.cues
+			rests = self.state.rests
+			Util.extend(self.reports, self.state.reports)
 		var every = self.done + self.placed
 		return MetaPlan.LayerPlan.new(
 			self.layer,
@@ -131,16 +132,16 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 				or not planned.get(report.request, []).has(report.at))):
 			reports.append(report)
 	var begin = _begin(graph, old, stance)
-	var performer = Sampling.performer_after(project, graph, seed_, begin, old.past, kept, moods, track)
-	performer.model = chain
-	if begin == "" or not performer.begin(begin):
+	var state = Sampling.resume_layer(project, graph, seed_, begin, old.past, kept, moods, track)
+	state.model = chain
+	if begin == "" or not Sampling.begin_layer(state, begin):
 		var why = "the %s layer has no stance with a loop to begin in" % [layer]
 		var waits = future + asked
 		for meta in waits:
 			if not meta.written:
 				reports.append(MetaPlan.Report.new(meta.request.id, "no-stance", why, layer, meta.start))
-		return LayerDraft.new(layer, performer, false, done, waits, reports, old.past, cursor, written)
-	performer.begun = _begun(old, kept.size())
+		return LayerDraft.new(layer, state, false, done, waits, reports, old.past, cursor, written)
+	state.begun = _begun(old, kept.size())
 	if kept.size() > 0 and kept[-1].end > now:
 		var first = null
 		for meta3 in old.metas:
@@ -149,19 +150,19 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 				break
 		var running = first
 		var leaves = _leaves(running, stopped, track, now)
-		performer.make_way(running, asked, now, leaves)
+		Leaving.make_way(state, running, asked, now, leaves)
 	if old.rests.size() > 0 and now > 0:
 		var begun = {}
-		for cue in performer.cues:
+		for cue in state.cues:
 			Util.add_to(begun, cue.end - cue.blend_out)
 		var found = []
 		for rest in old.rests:
 			if rest.fade_start < now or begun.has(rest.start):
 				found.append(rest)
-		performer.rests = found
-	performer.free_ = Util.most(now - (performer.ready() - performer.free_), performer.free_)
+		state.rests = found
+	state.free_ = Util.most(now - (state.ready() - state.free_), state.free_)
 	var delayed
-	var both2 = Replan.delay(asked, performer.ready(), project.settings)
+	var both2 = Replan.delay(asked, state.ready(), project.settings)
 	asked = both2[0]
 	delayed = both2[1]
 	var busy = -INF  # what runs keeps the time it was wanted for, from the models
@@ -172,7 +173,7 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 	var placed = both3[0]
 	var moved = both3[1]
 	var every = reports + delayed + moved
-	return LayerDraft.new(layer, performer, true, done, placed, every, old.past, cursor, written)
+	return LayerDraft.new(layer, state, true, done, placed, every, old.past, cursor, written)
 
 
 # Return whether the running action is left: it was stopped, or it is a gesture of the character's own and what it said was broken

@@ -1,4 +1,4 @@
-"""Bring a skeleton into the pose in which the default body was sculpted, whatever its rest pose is."""
+"""Bring a skeleton into the pose in which a body was made, whatever its rest pose is."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion import rotation
+from metagraph.motion.fitting.footing import Footing
 from metagraph.motion.joint_map import ARM, FINGERS, LEG, NEEDED, SIDES, find_known_roles
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
-from preview.default_body.footing import Footing
 
 Array = NDArray[Any]
 
@@ -27,7 +27,7 @@ SHORTEST = 0.02  # of its height: legs, trunks and arms that are shorter are non
 
 @dataclass(frozen=True)
 class Bind:
-    """A skeleton as the body was sculpted: facing +Z, straight legs, arms halfway down.
+    """A skeleton as the body was made: facing +Z, its limbs as the body's.
 
     `roles` are its joints by role, also of fingers. `rotations` `[J, 4]` and `positions` `[J, 3]` are global.
     """
@@ -55,9 +55,9 @@ def bind_pose(skeleton: Skeleton, at: Mapping[str, Array], footing: Footing | No
         return f"the skeleton has no {missing[0]}"
     known = find_known_roles(skeleton, roles)
     turned, places = skeleton.globals(skeleton.rest if footing is None else footing.pose)
-    if (why := _why_not(places, known)) is not None:
+    if (why := explain_no_standing(places, known)) is not None:
         return why
-    turned, places = _facing(turned, places, known)
+    turned, places = turn_to_front(turned, places, known)
     levels = {
         side: rotation.find_rotation_between(rotation.rotate_vectors(turned[known[f"{side}_foot"]], up), UP)
         for side, up in zip(SIDES, (None, None) if footing is None else footing.ups, strict=True)
@@ -71,7 +71,7 @@ def bind_pose(skeleton: Skeleton, at: Mapping[str, Array], footing: Footing | No
     return Bind(known, rotation.multiply(swings, turned), out)
 
 
-def _why_not(places: Array, roles: Mapping[str, int]) -> str | None:
+def explain_no_standing(places: Array, roles: Mapping[str, int]) -> str | None:
     """Return why a pose is none of a standing person, None if it is one."""
     lines = [("hips", "head")] + [(f"{side}_foot", f"{side}_upper_leg") for side in SIDES]
     for low, high in lines:
@@ -87,7 +87,7 @@ def _why_not(places: Array, roles: Mapping[str, int]) -> str | None:
     return None
 
 
-def _facing(turned: Array, places: Array, roles: Mapping[str, int]) -> tuple[Array, Array]:
+def turn_to_front(turned: Array, places: Array, roles: Mapping[str, int]) -> tuple[Array, Array]:
     """Return a pose turned about the vertical so that the character's left is at +X."""
     across = sum(places[roles[f"left_{r}"]] - places[roles[f"right_{r}"]] for r in ("upper_leg", "upper_arm"))
     turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.arctan2(across[2], across[0]))
@@ -136,7 +136,7 @@ def _ways(roles: Mapping[str, int], places: Array, at: Mapping[str, Array]) -> d
     bones += [(f"{s}_hand", f"{s}_{f}_1") for s in SIDES for f in ("index", "middle")]
     out: dict[str, tuple[Array, Array]] = {}
     for role, to in bones:
-        if role in roles and to in roles:
+        if role in roles and to in roles and role in at and to in at:
             own = places[roles[to]] - places[roles[role]]
             if np.linalg.norm(own) > 1e-6:
                 out[role] = own, at[to] - at[role]
@@ -149,7 +149,7 @@ def _angle(a: Array, b: Array) -> float:
 
 def _hand_turn(roles: Mapping[str, int], places: Array, at: Mapping[str, Array], side: str) -> Array | None:
     """Return the turn that brings a hand's knuckles in line, None if fewer than two are known."""
-    knuckles = [f"{side}_{f}_1" for f in FINGERS[1:] if f"{side}_{f}_1" in roles]
+    knuckles = [k for k in (f"{side}_{f}_1" for f in FINGERS[1:]) if k in roles and k in at]
     if len(knuckles) < 2:
         return None
     hand = f"{side}_hand"
@@ -177,7 +177,7 @@ def _heading(
 ) -> Array:
     """Return the turn that lets a foot point where the sculpted one does, after it was turned level."""
     foot, toes = f"{side}_foot", f"{side}_toes"
-    if toes not in roles:
+    if toes not in roles or toes not in at:
         return level
     own = rotation.rotate_vectors(level, places[roles[toes]] - places[roles[foot]]) * LEVEL
     if np.linalg.norm(own) < 1e-4:

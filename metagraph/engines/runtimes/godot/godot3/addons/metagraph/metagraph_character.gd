@@ -1,14 +1,14 @@
 extends Node
-# Plays a Metagraph export on a Godot 3 Skeleton: the small counterpart of metagraph_character.gd, which is for Godot 4.
+# Plays a Metagraph export on a Godot 3 Skeleton: the small counterpart of the node for Godot 4.
 
 signal began(action, layer, meta)
 signal ended(action, layer, meta)
 
-const Graph = preload("../core/graph.gd")
-const Performer = preload("../core/character.gd")
-const Talk = preload("../core/talk.gd")
-const Bones = preload("../core/bones.gd")
-const Shim = preload("../core/shim3.gd")
+const Graph = preload("core/graph.gd")
+const Performer = preload("core/character.gd")
+const Talk = preload("core/talk.gd")
+const Bones = preload("core/bones.gd")
+const Shim = preload("core/shim3.gd")
 
 export(String, FILE, "*.json") var json_path = ""
 export(String, FILE) var glb_path = ""
@@ -90,6 +90,15 @@ func answer(id):
 # Returns what may be asked for: layers with stances, actions and tags, lines, points, what "do" may be; empty while nothing is read.
 func describe():
 	return character.describe() if character != null else {}
+
+
+# Sets a parameter of the project; returns the id of the request that this makes.
+func set_parameter(parameter, value = null):
+	return character.set_parameter(parameter, value) if character != null else ""
+
+
+func get_parameter(parameter):
+	return character.get_parameter(parameter) if character != null else null
 
 
 func gesture(tags = [], more = {}):

@@ -10,7 +10,7 @@ import pytest
 
 from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
-from preview.default_body.footing import find_footing
+from metagraph.motion.fitting.footing import find_footing
 from tests.label_zoo.rigs import Figure, on
 from tests.preview.conftest import chain
 

@@ -1,87 +1,52 @@
-"""Bring the surface of the default body to a skeleton's measures, and say which joints each point follows.
+"""Bring the surface of a body to a skeleton's measures, and say which joints each point follows.
 
-Each bone of the sculpted body carries what is round it to the skeleton's bone: stretched along it to its
-length, across it in the size of the whole. Radii thus are the same shares of the height on every skeleton.
+Each bone of the body carries what is round it to the skeleton's bone: stretched along it to its length,
+across it in the size of the whole. Radii thus are the same shares of the height on every skeleton.
 """
 
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
-from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.formats.gltf.reader import read_character
-from metagraph.motion.character_mesh import CharacterMesh
+from metagraph.motion.fitting.bind import Bind
+from metagraph.motion.fitting.sculpture import FACE, Sculpture
 from metagraph.motion.joint_map import FINGERS, SIDES
 from metagraph.motion.skeleton import Skeleton
-from preview.default_body.bind import Bind
 
 Array = NDArray[Any]
 
-PATH = Path(__file__).with_name("body.glb")
 TRUNK = ("hips", "spine", "chest", "upper_chest")
 LIMBS = ("upper_arm", "lower_arm", "upper_leg", "lower_leg")
 BELOW = {"upper_arm": "lower_arm", "lower_arm": "hand", "upper_leg": "lower_leg", "lower_leg": "foot"}
 PARTS = {"leg": 0.5, "trunk": 0.35, "arm": 0.15}  # how much each length says of the body's size
-NECK_BASE = 0.10  # metres above the shoulders of the sculpted body; a head's joint below that is the neck's
+NECK_BASE = (
+    0.10  # metres above the shoulders of a body of usual size; a head's joint below that is the neck's
+)
 PEOPLE = 1.2  # the most by which people's shoulders are broader than their height says
 STOUT = 2.5  # how much thicker a body is drawn, at most
-ANKLES = (0.04, 0.14)  # metres on the sculpted body, between which an ankle's height is believed
+ANKLES = (0.04, 0.14)  # metres on a body of usual size, between which an ankle's height is believed
 SEAT = 0.05  # metres above the hip joints that the pelvis reaches, wherever the spine begins
 
 
-@dataclass(frozen=True, eq=False)
-class Sculpture:
-    """The body as sculpted. `at` are its joints' places by role, `weights` `[V, J]` what each point follows,
-    `column` the column of each role in it.
-    """
-
-    character: CharacterMesh
-    at: dict[str, Array]
-    weights: Array
-    column: dict[str, int]
-
-    def share(self, *roles: str) -> Array:
-        """Return how much each point follows some roles, `[V]`."""
-        return np.asarray(self.weights[:, [self.column[r] for r in roles]].sum(1))
-
-    def middle(self, part: str) -> Array:
-        return np.asarray((self.at[f"left_{part}"] + self.at[f"right_{part}"]) / 2)
-
-
-@lru_cache(maxsize=1)
-def read_sculpture() -> Sculpture:
-    """Read the sculpted body; it is kept, as it is the same for all skeletons."""
-    body = read_character(PATH)
-    names = body.skeleton.names
-    _, places = body.skeleton.globals(body.skeleton.rest)
-    weights = np.zeros((len(body.positions), len(names)))
-    for k in range(body.joints.shape[1]):
-        np.add.at(weights, (np.arange(len(weights)), body.joints[:, k]), body.weights[:, k])
-    weights /= weights.sum(1, keepdims=True)
-    return Sculpture(
-        body, dict(zip(names, places, strict=True)), weights, {n: i for i, n in enumerate(names)}
-    )
-
-
 class Fit:
-    """The body's surface on a skeleton. `size` is how large it is beside the sculpted one, `broad` how thick.
-    `ankle` is how high ankles are above the soles, metres, None if it is not known.
+    """The surface of a body on a skeleton. `size` is how large it is beside the body as it was made, `broad`
+    how thick, `people` how large beside a body of usual size. `ankle` is how high ankles are above the soles,
+    metres, None if it is not known.
     """
 
-    def __init__(self, skeleton: Skeleton, bind: Bind, ankle: float | None = None) -> None:
+    def __init__(self, skeleton: Skeleton, bind: Bind, body: Sculpture, ankle: float | None = None) -> None:
         self.ankle = ankle
-        self.skeleton, self.bind, self.body = skeleton, bind, read_sculpture()
+        self.skeleton, self.bind, self.body = skeleton, bind, body
         self.size = self._size()
+        self.people = self.size * body.unit
         self.broad = self.size * self._breadth()
         self.own = {role: bind.at(role) for role in bind.roles}
         self._neck = self._place_neck()
-        self.positions = self._carry()
+        self.positions = self.carry(np.asarray(body.character.positions, float))
 
     def _size(self) -> float:
         body, bind = self.body, self.bind
@@ -116,17 +81,17 @@ class Fit:
         """Return where the neck begins: above the shoulders. Rigs have its joint anywhere between chest and
         skull.
         """
-        usual = self.body.at["neck"] - self.body.middle("upper_arm")
+        usual = self.body.neck - self.body.middle("upper_arm")
         return np.asarray(self.bind.middle("upper_arm") + self.size * usual)
 
     # --- the surface
 
-    def _carry(self) -> Array:
-        """Return the points on the skeleton's bones, `[V, 3]`."""
-        body, points = self.body, np.asarray(self.body.character.positions, float)
+    def carry(self, points: Array) -> Array:
+        """Return points of the body's vertices `[V, 3]`, or near them, as the skeleton's bones carry them."""
+        body = self.body
         out = body.share(*TRUNK, "left_shoulder", "right_shoulder")[:, None] * self._trunk(points)
         out += body.share("neck")[:, None] * self._on_neck(points)
-        out += body.share("head")[:, None] * self._on_head(points)
+        out += body.share("head", *FACE)[:, None] * self._on_head(points)
         for side in SIDES:
             for part in LIMBS:
                 role, to = f"{side}_{part}", f"{side}_{BELOW[part]}"
@@ -159,32 +124,36 @@ class Fit:
         return np.asarray(out)
 
     def _on_neck(self, points: Array) -> Array:
-        if self._head_is_neck:
-            return np.asarray(self._neck + self.broad * (points - self.body.at["neck"]))
+        if self._head_is_neck or "neck" not in self.body.at:
+            return np.asarray(self._neck + self.broad * (points - self.body.neck))
         return self._along(points, "neck", "head", self._neck, self.own["head"], self.broad)
 
     def _on_head(self, points: Array) -> Array:
         if self._head_is_neck:
-            return np.asarray(self._neck + self.broad * (points - self.body.at["neck"]))
+            return np.asarray(self._neck + self.broad * (points - self.body.neck))
         return np.asarray(self.own["head"] + self.broad * (points - self.body.at["head"]))
 
     @property
     def _head_is_neck(self) -> bool:
         """Whether the head's joint lies so low that the neck turns with it."""
         high = self.own["head"][1] - self.bind.middle("upper_arm")[1]
-        return bool(high < NECK_BASE * self.size)
+        return bool(high < NECK_BASE * self.people)
 
     def _foot(self, points: Array, side: str) -> Array:
         """Return points of a foot whose sole is level."""
         body, foot, toes = self.body, f"{side}_foot", f"{side}_toes"
         a, size = body.at[foot], self.broad
-        high = self.ankle
-        if high is None and toes in self.own:
+        high, there = self.ankle, toes in self.own and toes in body.at
+        if high is None and there:
             high = float(self.own[foot][1] - self.own[toes][1] + size * body.at[toes][1])
         usual = float(a[1])
-        tall = usual * size if high is None else float(np.clip(high, ANKLES[0] * size, ANKLES[1] * size))
+        tall = (
+            usual * size
+            if high is None
+            else float(np.clip(high, ANKLES[0] * self.people, ANKLES[1] * self.people))
+        )
         scale = np.array([size, tall / usual, size])
-        if toes in self.own:
+        if there:
             own = float(np.hypot(*(self.own[toes] - self.own[foot])[[0, 2]]))
             line = float(np.hypot(*(body.at[toes] - a)[[0, 2]]))
             scale[2] = float(np.clip(own / line, 0.75 * size, 1.2 * size))
@@ -193,7 +162,7 @@ class Fit:
     def _hand(self, points: Array, side: str) -> Array:
         """Return points of a hand times how much they follow it and its fingers."""
         body, hand = self.body, f"{side}_hand"
-        knuckles = [f"{side}_{f}_1" for f in FINGERS[1:] if f"{side}_{f}_1" in self.own]
+        knuckles = [k for k in (f"{side}_{f}_1" for f in FINGERS[1:]) if k in self.own and k in body.at]
         scale = self.broad
         if len(knuckles) > 1:
             own = np.mean([np.linalg.norm(self.own[k] - self.own[hand]) for k in knuckles])
@@ -204,9 +173,10 @@ class Fit:
         on_hand = self.own[hand] + scale * (points - body.at[hand])
         out = body.share(hand)[:, None] * on_hand
         for finger in FINGERS:
-            known = knuckles and f"{side}_{finger}_1" in self.own
+            line = [n for n in (1, 2, 3) if f"{side}_{finger}_{n}" in body.at]
+            known = bool(knuckles) and len(line) > 1 and f"{side}_{finger}_1" in self.own
             stretch = 1.0
-            for n in (1, 2, 3):
+            for n in line:
                 role, to = f"{side}_{finger}_{n}", f"{side}_{finger}_{n + 1}"
                 moved = on_hand
                 if known and role in self.own:
@@ -216,7 +186,7 @@ class Fit:
                         stretch = float(np.clip(own / line / scale, 0.5, 2.0))
                     moved = self._on_finger(points, role, n, finger, scale, stretch)
                 elif known:  # a finger with fewer joints: its end is carried by the last one there is
-                    last = max(k for k in (1, 2, 3) if f"{side}_{finger}_{k}" in self.own)
+                    last = max(k for k in line if f"{side}_{finger}_{k}" in self.own)
                     moved = self._on_finger(points, f"{side}_{finger}_{last}", last, finger, scale, stretch)
                 out += body.share(role)[:, None] * moved
         return np.asarray(out)
@@ -226,8 +196,8 @@ class Fit:
     ) -> Array:
         """Return points carried with one bone of a finger."""
         body, side = self.body, role.split("_")[0]
-        first = f"{side}_{finger}_{n}" if n < 3 else f"{side}_{finger}_2"
-        a, b = body.at[first], body.at[first[:-1] + str(int(first[-1]) + 1)]
+        n = n if f"{side}_{finger}_{n + 1}" in body.at else n - 1
+        a, b = body.at[f"{side}_{finger}_{n}"], body.at[f"{side}_{finger}_{n + 1}"]
         way = (b - a) / np.linalg.norm(b - a)
         away = points - body.at[role]
         return np.asarray(self.own[role] + scale * (away + (stretch - 1) * (away @ way)[:, None] * way))
@@ -250,7 +220,10 @@ class Fit:
         neck = body.share("neck")
         for joint, share in zip(necks, self._levels(necks, False), strict=True):
             add(joint, neck * share)
-        add(roles["head"], body.share("head"))
+        add(roles["head"], body.share("head", *(part for part in FACE if part not in roles)))
+        for part in FACE:
+            if part in roles:
+                add(roles[part], body.share(part))
         for side in SIDES:
             for part in ("shoulder", *LIMBS, "hand", "foot", "toes"):
                 role = f"{side}_{part}"
@@ -295,13 +268,13 @@ class Fit:
         high = self.positions[:, 1]
         at = self.bind.positions[joints, 1].copy()
         if trunk:
-            least = self.bind.middle("upper_leg")[1] + SEAT * self.size
+            least = self.bind.middle("upper_leg")[1] + SEAT * self.people
             at[1:] = np.maximum(at[1:], least)
         at = np.maximum.accumulate(at)
         left, out = np.ones(len(high)), []
         for k in range(1, len(joints)):
-            gaps = np.diff(np.append(at, at[-1] + 0.1 * self.size))
-            reach = float(np.clip(0.6 * min(gaps[k - 1], gaps[k]), 0.012 * self.size, 0.07 * self.size))
+            gaps = np.diff(np.append(at, at[-1] + 0.1 * self.people))
+            reach = float(np.clip(0.6 * min(gaps[k - 1], gaps[k]), 0.012 * self.people, 0.07 * self.people))
             t = np.clip((high - at[k] + reach) / (2 * reach), 0, 1)
             passed = t * t * (3 - 2 * t)
             out.append(left * (1 - passed))
