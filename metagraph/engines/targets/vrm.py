@@ -225,7 +225,7 @@ def _write(order: ExportOrder) -> ExportedFiles:
     write_glb(
         path,
         [replace(c.renamed(n), skeleton=skeleton) for c, n in zip(clips, names, strict=True)],
-        replace(body, skeleton=skeleton),
+        body,
         engine=ForEngine(
             stand=stand,
             extensions=extensions,
