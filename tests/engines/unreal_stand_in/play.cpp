@@ -213,6 +213,8 @@ static int Drive(UMetagraphAsset& asset) {
     for (int32 n = 0; n < component.Pose()->Curves.Num(); n++) {
         wrong += std::abs(half.Curve.Get(component.Pose()->Curves[n]) - component.Pose()->Weights[n] / 2);
     }
+    for (const auto& one : half.Curve.Flags) wrong += one.second != UE::Anim::ECurveElementFlags::MorphTarget;
+    wrong += half.Curve.Flags.size() != half.Curve.Values.size();
     std::cout << "face " << (moved == 0 && wrong < 1e-6 ? "alone" : "wrong") << " " << component.Pose()->Curves.Num() << "\n";
     return 0;
 }
