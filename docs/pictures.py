@@ -2,9 +2,9 @@
 under `xvfb-run`).
 
 Writes into docs/images: screens/*.webp, timing.png, practice.png, empty.png, light.png, requests.png,
-models.png, label.png, export.png, web.png, conversation.png, motion-graph.png and performance.png, from our
-own sample clips only; with names behind it, only those. The screen has to be larger than 2560 x 1440. The
-web page needs Node, Chromium and what tests/package.json names.
+models.png, label.png, export.png, parameters.png, web.png, conversation.png, motion-graph.png and
+performance.png, from our own sample clips only; with names behind it, only those. The screen has to be
+larger than 2560 x 1440. The web page needs Node, Chromium and what tests/package.json names.
 """
 
 from __future__ import annotations
@@ -270,6 +270,27 @@ def models() -> None:
     close(out)
 
 
+def parameters() -> None:
+    """The panel of parameters with a control of each kind."""
+    from metagraph.graph.editing.parameters import list_offered_parameters
+
+    out = on_sample()
+    out.show("parameters")
+    panel = out.shell.panel("parameters")
+    names = ("mood", "energy", "looks_at", "attention", "arms_stance", "speaking", "greeting", "nod")
+    offered = {one.name: one for one in list_offered_parameters(out.document.project)}
+    for name in names:
+        panel.add(offered[name])
+    panel.controls["energy"].number.setValue(1.4)
+    wait(1500)
+    whole = panel.rows.parentWidget()
+    whole.resize(620, whole.sizeHint().height())
+    wait(300)
+    whole.grab().save(str(ROOT / "docs" / "images" / "parameters.png"))
+    print("docs/images/parameters.png")
+    close(out)
+
+
 def exporting() -> None:
     """The export dialog, on a target that loses something."""
     from app.features.export.export_dialog import ExportDialog
@@ -279,7 +300,7 @@ def exporting() -> None:
     dialog.open()
     dialog._select("playcanvas")
     dialog.folder.setText("game/playcanvas")
-    wait(600)
+    wait(60000, lambda: "MB in" in dialog.sized.text())
     shoot(dialog, "export.png")
     dialog.reject()
     close(out)
@@ -408,6 +429,7 @@ PICTURES: dict[str, Callable[[], None]] = {
     "models": models,
     "label": labelling,
     "export": exporting,
+    "parameters": parameters,
     "conversation": conversation,
     "motion-graph": motion_graph,
     "web": page,

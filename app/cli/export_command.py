@@ -47,7 +47,10 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--compress",
         action="store_true",
         help="compress the GLB with EXT_meshopt_compression: half the size, for runtimes and viewers "
-        "that support it",
+        "that support it; the targets web and javascript do so by themselves",
+    )
+    parser.add_argument(
+        "--no-compress", action="store_true", help="do not compress the GLB, for other viewers of it"
     )
     parser.add_argument(
         "--pretty",
@@ -168,7 +171,7 @@ def _once(options: Namespace) -> None:
         options.expanded,
         options.project.resolve().parent,
         lambda p: any(is_inside(p, x) for x in options.sounds),
-        options.compress,
+        options.compress or (registry.get_target(options.target).packs and not options.no_compress),
         options.pretty,
     )
     made = registry.write_for_target(

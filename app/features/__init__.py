@@ -40,6 +40,7 @@ FEATURES = (
     "export",
     "render",
     "props",
+    "parameters",
     "study",
     "guide",
     "welcome",

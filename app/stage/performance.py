@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
+import msgspec
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.project.document import Document
@@ -41,7 +42,8 @@ class StagePerformance(QObject):
 
     `changed` is emitted if something else plays, or the same was planned again. `requests` edits the
     requests, `timeline` the notes beside them. `live` begins and ends live play. `muted` has layers that rest
-    for the time being. `before` is the state of the project from which clips and actions are shown instead.
+    for the time being. `directed` are requests of the moment, such as those of a parameter that is tried;
+    they are never saved. `before` is the state of the project from which clips and actions are shown instead.
     `staged` is the whole performance as it was last shown, None before; a clip or an action may be shown now.
     """
 
@@ -68,6 +70,8 @@ class StagePerformance(QObject):
         self.conversations = ConversationPlans()
         self._noted: tuple[str, ...] = ()  # about a conversation, reported once
         self._fires: tuple[Fire, ...] = ()  # triggers of the manual state machine, fired since it began
+        self.directed: tuple[AnyRequest, ...] = ()
+        self._directions = 0
         self._on_stage = session.onstage.performance, session.onstage.improvised
         self.live = LiveControl(document, session, self)
         self.live.changed.connect(self.replan)
@@ -107,6 +111,8 @@ class StagePerformance(QObject):
     def _loaded(self) -> None:
         self.before = self.staged = None
         self.muted = frozenset()
+        self.directed = ()
+        self._directions = 0
         self.live.end()
         self.live.last = None
         self.length = LENGTH
@@ -119,6 +125,7 @@ class StagePerformance(QObject):
         if (onstage.performance, onstage.improvised) != self._on_stage:
             self._on_stage = onstage.performance, onstage.improvised
             self.length = self.requests.kept.length if self.requests.kept is not None else LENGTH
+            self.directed = ()
             self.replan()
 
     def _conversed(self) -> None:
@@ -167,6 +174,7 @@ class StagePerformance(QObject):
     def _switched(self) -> None:
         self.live.end()
         self._fires = ()
+        self.directed = ()
         self.length = LENGTH
         self.replan()
 
@@ -178,6 +186,30 @@ class StagePerformance(QObject):
         self._fires = (*(f for f in self._fires if f.at < at), Fire(self.session.place.layer, trigger, at))
         self.session.transport.set_playing(True)
         self.replan()
+
+    def direct(self, ask: AnyRequest, instead_of: str = "") -> str:
+        """Request something of what is on stage, now, without keeping it; return the request's id. A
+        conversation or a manual state machine leaves the stage to the models. instead_of: an earlier request,
+        which is forgotten if it has not begun.
+        """
+        self._directions += 1
+        ident = f"directed{self._directions}"
+        if self.live.stage is not None:
+            self.live.stage.ask(msgspec.structs.replace(ask, id=ident))
+            return ident
+        onstage, transport = self.session.onstage, self.session.transport
+        onstage.set_mode("meta")
+        onstage.set_conversation(None)
+        transport.show_plan()
+        now = transport.seconds
+        at = round(now + SOON, 3)
+        # What was directed later, before the playhead was set back, is removed.
+        kept = [x for x in self.directed if (x.at or 0.0) <= at]
+        kept = [x for x in kept if x.id != instead_of or (x.at or 0.0) <= now]
+        self.directed = (*kept, msgspec.structs.replace(ask, id=ident, at=at))
+        transport.set_playing(True)
+        self.replan()
+        return ident
 
     def _edited(self, before: Project, after: Project) -> None:
         if differs_only_in_timeline(before, after):
@@ -203,6 +235,7 @@ class StagePerformance(QObject):
         project, kept, length = self.document.project, self.requests.kept, self.length
         before = self.before if self.session.transport.show != "plan" else None
         manual, fires = self.session.onstage.mode == "manual", self._fires
+        directed = self.directed
         show, shown, anew = (
             self.session.transport.show,
             self.session.transport.shown,
@@ -227,14 +260,10 @@ class StagePerformance(QObject):
             if talk is not None and project.skeleton is not None:
                 return self.conversations.show(project, talk, folder, side)
             if kept is None:
-                return ShownPlayback(project, improvise(project, length, mode=mode), length)
-            return ShownPlayback(
-                project,
-                plan_performance(
-                    project, list_kept_asks(kept), length, kept.seed, dict(kept.stances), kept.idle
-                ),
-                length,
-            )
+                return ShownPlayback(project, improvise(project, length, mode=mode, asks=directed), length)
+            asks = (*list_kept_asks(kept), *directed)
+            plan = plan_performance(project, asks, length, kept.seed, dict(kept.stances), kept.idle)
+            return ShownPlayback(project, plan, length)
 
         self.jobs.start("plan", work, self._planned, self._failed, quick=True)
 

@@ -23,6 +23,7 @@ from metagraph.engines.reading import read_export
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.offered import list_offered_requests, list_tools
+from metagraph.graph.parameter import ParameterValues
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.alphabet import ALPHABET
@@ -85,6 +86,7 @@ class Character:
         self._happened: list[Happening] = []
         self._sounds: dict[str, StreamedVoice] = {}  # the sounds of lines that stream in
         self._speech = SpeechWatch()
+        self._values = ParameterValues()
         self._count = 0
         self._cut = 0.0
         self._seen = -inf  # the time of the previous update
@@ -138,6 +140,28 @@ class Character:
             return self._take(a.make_request(data))
         except a.RequestError as error:
             return self._refuse(ident, str(error))
+
+    def set_parameter(self, name: str, value: Any = None) -> str:
+        """Set a parameter of the project; return the id of the request that this makes. A number outside of
+        its range becomes the nearest inside, a trigger has no value, and to set a value again that is already
+        set changes nothing. What cannot be set is refused, as `answer` reports; nothing is raised.
+        """
+        parameters = self.project.parameters
+        if self._values.has(parameters, name, value):
+            return self._values.made[name]
+        try:
+            request = self._values.take(parameters, name, value)
+        except a.RequestError as error:
+            self._count += 1
+            return self._refuse(f"#{self._count}", str(error))
+        self._values.made[name] = ident = self.ask(request)
+        return ident
+
+    def get_parameter(self, name: str) -> Any:
+        """Return the value that a parameter was set to, else its first one; None for a trigger and for a name
+        that is not known.
+        """
+        return self._values.get(self.project.parameters, name)
 
     def say_sound(self, ident: str, samples: Sequence[float], rate: float) -> str:
         """Say a line whose sound streams in while it is said. Each call gives its next samples, -1..1, and

@@ -13,6 +13,7 @@ import msgspec
 from msgspec import Meta, Struct
 
 from metagraph.graph.life import Face, Life
+from metagraph.graph.parameter import ChoiceValue, ParameterType
 from metagraph.graph.requests import Line, Performance, Point
 from metagraph.graph.touch import Touch
 
@@ -440,6 +441,33 @@ class ExportedVoice(Struct, forbid_unknown_fields=True):
     ]
 
 
+class ExportedChoice(Struct, forbid_unknown_fields=True):
+    """A word that a parameter may be set to. value: what it puts into the request's field."""
+
+    name: Id
+    value: ChoiceValue
+
+
+class ExportedParameter(Struct, omit_defaults=True, forbid_unknown_fields=True):
+    """A named value that a game sets. request: what that requests, as JSON. field: of the request, which the
+    value goes into; "" for a trigger. initial: the value until it is set; null for a trigger. choices: of an
+    enum or a list; of a boolean what it does when off, then when on. least, most: of a number. beside: other
+    parameters whose values, if they were set, go into the same request. replaces: others that are bound to
+    the same; they are as if they were not set, once it is.
+    """
+
+    type: ParameterType
+    request: dict[str, Any]
+    field: str = ""
+    initial: float | bool | str | list[str | float] | None = None
+    choices: list[ExportedChoice] = []
+    least: Number = 0.0
+    most: Number = 1.0
+    about: str = ""
+    beside: list[str] = []
+    replaces: list[str] = []
+
+
 class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):
     """A Metagraph export: this JSON and the GLB it names."""
 
@@ -470,6 +498,7 @@ class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):
     touch: Touch = Touch()
     contact_rig: ExportedContactRig | None = None
     weight_rig: ExportedWeightRig | None = None
+    parameters: dict[str, ExportedParameter] = {}
     glb_bytes: Annotated[
         int | None,
         Meta(description="the length of the GLB that belongs to this JSON; null in older exports"),

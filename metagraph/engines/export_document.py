@@ -8,6 +8,7 @@ from metagraph.engines import contract as c
 from metagraph.engines.export_actions import NONE, list_exported_actions
 from metagraph.engines.export_contacts import export_contact_rig
 from metagraph.engines.export_listing import ListedExport, list_machine
+from metagraph.engines.export_parameters import export_parameters
 from metagraph.engines.export_rig import export_rig, list_export_voices
 from metagraph.engines.export_weight import export_weight_rig, find_arm_rows, find_planted_feet
 from metagraph.graph import anatomy
@@ -106,6 +107,7 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         touch=project.touch,
         contact_rig=export_contact_rig(project),
         weight_rig=export_weight_rig(project),
+        parameters=export_parameters(project),
     )
     return out
 

@@ -15,6 +15,7 @@ from metagraph.common.files import guard_reader, is_file, read_file
 from metagraph.common.wording import phrase
 from metagraph.engines import contract as c
 from metagraph.engines.export_contacts import read_contact_rig, read_contacts
+from metagraph.engines.export_parameters import read_parameters
 from metagraph.engines.export_rig import read_rig, read_voices
 from metagraph.engines.export_weight import read_weight
 from metagraph.errors import FileError
@@ -38,6 +39,8 @@ from metagraph.graph.model import (
     Stance,
     Timing,
 )
+from metagraph.graph.parameter import CharacterParameter
+from metagraph.graph.requests import RequestError
 from metagraph.graph.touch import Touch
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
@@ -127,7 +130,15 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         lines=dict(document.lines),
         performances=dict(document.performances),
         voices=read_voices(document.voices),
+        parameters=_parameters(document),
     )
+
+
+def _parameters(document: c.Export) -> dict[str, CharacterParameter]:
+    try:
+        return read_parameters(document.parameters)
+    except (RequestError, msgspec.ValidationError) as error:
+        raise DataError("$.parameters", str(error)) from None
 
 
 def _clips(

@@ -15,6 +15,7 @@ from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.checks.base import check_base, get_stance_name
+from metagraph.graph.checks.parameters import check_parameters
 from metagraph.graph.editing.one_sided import check_limbs
 from metagraph.graph.expand import find_reachable
 from metagraph.graph.manual.check import check_manual
@@ -37,6 +38,7 @@ def check_project(project: Project) -> list[Problem]:
     for layer in LAYERS:
         found += _graph(project, project.graphs[layer])
     found += check_limbs(project)
+    found += check_parameters(project)
     if project.manual:
         found += check_manual(project)
     elif project.clips and not any(project.graphs[layer].stances for layer in LAYERS):

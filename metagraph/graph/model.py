@@ -16,6 +16,7 @@ from metagraph.graph.clip_mark import ClipMark
 from metagraph.graph.conversation.model import AUTO, Conversation
 from metagraph.graph.life import Face, Life
 from metagraph.graph.manual.machine import Alias, Link, Manual, State
+from metagraph.graph.parameter import CharacterParameter
 from metagraph.graph.prop import Prop
 from metagraph.graph.requests import Line, Performance, Point
 from metagraph.graph.timeline import Timeline
@@ -424,7 +425,8 @@ class Project:
     those. `language` is the code of the language that conversations are read in ("de"), or "auto" to
     detect it from their words. `manual` has the state machines drawn by hand, by layer. `voices` has the
     analysed sound (`playback.life.voice.Voice`) of each line read so far; it is never saved. `touch` says
-    whether contacts hold and hands stay outside the body.
+    whether contacts hold and hands stay outside the body. `parameters` are the named values that a game sets,
+    in the order in which they are shown.
     """
 
     name: str = "untitled"
@@ -455,6 +457,7 @@ class Project:
     manual: Mapping[Layer, Manual] = field(default_factory=dict)
     voices: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     touch: Touch = field(default_factory=Touch)
+    parameters: Mapping[str, CharacterParameter] = field(default_factory=dict)
 
     def actions(self) -> Iterable[Action]:
         """Yield every action of every layer."""

@@ -13,6 +13,7 @@ import msgspec
 from metagraph.graph import anatomy
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Action, MetaGraph, Project
+from metagraph.graph.parameter import describe_parameters
 from metagraph.graph.repeating import seconds_played
 from metagraph.graph.words import MODES
 
@@ -32,7 +33,7 @@ def list_offered_requests(
     `project`, its name; `words`; `modes`; `joints` (name, parent, part); `layers`: for each its `start`, its
     `stances` (id, name), its `actions` but loops of stances (id, name, kind, stance, seconds; `to`, `limb`
     and `tags` if there are any) and `tags` with the number of actions; `lines` (id, text), by id; `points` by
-    name, metres.
+    name, metres; `parameters`, if there are any, see `describe_parameters`.
     """
     skeleton, parts = project.skeleton, anatomy.project_parts(project) if project.skeleton is not None else ()
     return {
@@ -49,6 +50,7 @@ def list_offered_requests(
             for ident in sorted(project.lines)[: most.get("lines")]
         ],
         "points": {name: list(point) for name, point in islice(project.points.items(), most.get("points"))},
+        **({"parameters": describe_parameters(project.parameters)} if project.parameters else {}),
     }  # fmt: skip
 
 

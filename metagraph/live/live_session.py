@@ -17,6 +17,7 @@ import msgspec
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import Layer, Project
+from metagraph.graph.parameter import ParameterValues
 from metagraph.live import describe
 from metagraph.live.admission import Admission
 from metagraph.live.generating import Generating
@@ -33,6 +34,7 @@ from metagraph.live.messages import (
     HeardMessage,
     Hello,
     Reply,
+    SetParameter,
     Status,
     read_live_request,
     split_message,
@@ -89,6 +91,7 @@ class LiveSession:
         self._edited = False
         self._cold = [x for x in project.actions() if x.kind == "gesture"]
         self._told: dict[str, bytes] = {}
+        self.parameters = ParameterValues()
         self._evaluator: Evaluator | None = None
 
     @property
@@ -197,6 +200,12 @@ class LiveSession:
         message = heard.message
         if isinstance(message, Hello | Status | Describe):
             return self._own(client, message)
+        if isinstance(message, SetParameter):
+            try:
+                request = self.parameters.take(self.project.parameters, message.name, message.value)
+            except a.RequestError as error:
+                return Reply(id=message.id or None, error=str(error))
+            heard = HeardMessage(msgspec.structs.replace(request, id=message.id))
         return self.admission.take(client, heard, work, place)
 
     def _own(self, client: Client, message: Hello | Status | Describe) -> Reply | bytes:

@@ -60,7 +60,19 @@ class Status(_Own, frozen=True, tag="status"):
 
 
 class Describe(_Own, frozen=True, tag="describe"):
-    """What can be requested of this character: its joints, stances, actions, tags, lines and points."""
+    """What can be requested of this character: its joints, stances, actions, tags, lines, points and
+    parameters.
+    """
+
+
+class SetParameter(_Own, frozen=True, tag="set"):
+    """Set a parameter of the character, a named value that its author declared, such as its mood or where it
+    looks. describe lists them. value: a number, true or false, a word, a list of words, three numbers
+    (metres), or nothing for a trigger. It is answered as the request that it makes.
+    """
+
+    name: a.Id
+    value: bool | float | str | tuple[float | str, ...] | None = None
 
 
 Place = Annotated[tuple[Annotated[float, Meta(ge=-1e7, le=1e7)], ...], Meta(min_length=2, max_length=3)]
@@ -140,8 +152,10 @@ class Partner(_Own, frozen=True, tag="partner"):
     share: Share | None = None
 
 
-OwnMessage = Hello | Status | Describe | Keypoints | Generate | Hear | Partner
-Message = Union[a.AnyRequest, Hello, Status, Describe, Keypoints, Generate, Hear, Partner]  # noqa: UP007
+OwnMessage = Hello | Status | Describe | SetParameter | Keypoints | Generate | Hear | Partner
+Message = Union[  # noqa: UP007 - msgspec reads it at run time
+    a.AnyRequest, Hello, Status, Describe, SetParameter, Keypoints, Generate, Hear, Partner
+]
 WORDS: tuple[str, ...] = (*a.WORDS, *(str(kind.__struct_config__.tag) for kind in get_args(OwnMessage)))
 
 

@@ -121,7 +121,15 @@ def _of_session(word: str, said: _Values) -> Mapping[str, Any] | None:
                 if name in more:
                     poses[name] = bool(more.pop(name)) if name == "translations" else more.pop(name)
             return {"do": "hello", "poses": poses if rate > 0 else None} | more
+        case "set":
+            name, *values = said.plain if said.texts[:1] == said.plain[:1] else ("", *said.plain)
+            return {"do": "set", "name": name} | ({"value": _join_values(values)} if values else {}) | more
     return None
+
+
+def _join_values(values: Sequence[Any]) -> Any:
+    """Return the one value of a parameter, or a list of several."""
+    return values[0] if len(values) == 1 else list(values)
 
 
 def _field(text: str) -> tuple[str, Any]:

@@ -25,7 +25,7 @@ pytestmark = needs_node
 
 
 MUTATIONS = [
-    ("life/gaze.js", "x * x * (3 - 2 * x)", "x", "the blending curve"),
+    ("rotation.js", "x * x * (3 - 2 * x)", "x", "the blending curve"),
     ("hashing.js", "return close(plain);", "return plain;", "the zero byte that closes a word"),
     ("hashing.js", "value ^= value >>> 13;", "value ^= value >>> 12;", "the mixing"),
     (

@@ -11,7 +11,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QSettings, Qt, QUrl
+from PySide6.QtCore import QSettings, Qt, QTimer, QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -43,6 +43,7 @@ from app.widgets.tree_items import list_items_below, list_top_items
 from metagraph.common.studio import find_export_folder
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.placing import ForeignFilesError
+from metagraph.engines.targets.sizes import ExportSize, measure_export
 from metagraph.engines.targets.target import Contents, ExportTarget, TargetReport
 from metagraph.engines.tools_file import write_tools
 from metagraph.engines.vectors import write_vectors
@@ -51,6 +52,7 @@ from metagraph.graph.expand import count_machine_size
 from metagraph.graph.manual.meta import make_exportable
 
 NAME = Qt.ItemDataRole.UserRole
+SOON = 250  # milliseconds after a choice until the size of the export is measured
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,7 @@ class ExportChoice:
     expanded: bool = False
     vectors: bool = False
     tools: bool = False
-    compress: bool = False
+    compress: bool | None = None  # None: as is usual for the target
 
 
 @dataclass(frozen=True)
@@ -102,8 +104,13 @@ class ExportDialog(QDialog):
         self.targets = self._list()
         self.title = QLabel(self)
         self.title.setProperty("heading", True)
-        self.words, self.losses, self.trouble = (QLabel(self, wordWrap=True) for _ in range(3))
+        self.words, self.sized, self.losses, self.trouble = (QLabel(self, wordWrap=True) for _ in range(4))
         self.words.setProperty("dim", True)
+        self.sized.setProperty("dim", True)
+        self.sizes: dict[tuple[object, ...], ExportSize | None] = {}  # what was measured, by what was chosen
+        self._measuring: WindowJob | None = None
+        self._soon = QTimer(self, singleShot=True, interval=SOON)
+        self._soon.timeout.connect(self._measure)
         for told in (self.words, self.trouble):  # paths and addresses can be copied
             told.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.losses.setTextFormat(Qt.TextFormat.RichText)
@@ -115,7 +122,7 @@ class ExportDialog(QDialog):
         self.progress.hide()
         right = QVBoxLayout()
         right.setSpacing(10)
-        for part in (self.title, self.words):
+        for part in (self.title, self.words, self.sized):
             right.addWidget(part)
         right.addLayout(self._form(chosen))
         right.addWidget(lost, 1)
@@ -129,6 +136,7 @@ class ExportDialog(QDialog):
         layout.addLayout(columns, 1)
         layout.addWidget(self._buttons())
         self.targets.currentItemChanged.connect(self._describe)
+        self.finished.connect(self._stop_measuring)
         self._select(chosen.target)
         errors = [p for p in check_project(self.project) if p.severity == "error"]
         if errors:
@@ -191,7 +199,9 @@ class ExportDialog(QDialog):
             tr("Compressed GLB, half the size, for runtimes and viewers that support it"), self
         )
         self.compress.setToolTip(tr("Uses EXT_meshopt_compression, which not every viewer opens"))
-        self.compress.setChecked(chosen.compress)
+        self.compress.clicked.connect(self._choose_packing)
+        for box in (self.mesh, self.expanded, self.compress):
+            box.toggled.connect(self._measure_soon)
         boxes = (self.mesh, self.expanded, self.vectors, self.tools, self.compress)
         for words, box in zip((tr("Include"), "", "", "", ""), boxes, strict=True):
             form.addRow(words, box)
@@ -274,6 +284,9 @@ class ExportDialog(QDialog):
         for box in (self.expanded, self.vectors, self.tools):
             box.setVisible(played)
         self.compress.setVisible(target.unpacks)
+        packed = self.chosen.compress
+        self.compress.setChecked(target.packs if packed is None else packed)
+        self._measure_soon()
         rows = [
             f"<li>{escape(tr_phrase(words))}</li>" for words in registry.describe_losses(project, target.name)
         ]
@@ -329,27 +342,92 @@ class ExportDialog(QDialog):
         self.words.setText(f"{self.results[name].words}\n{told}")
         self.trouble.setText("" if opened else tr("No browser opened. Open that address yourself."))
 
+    # --- how large it becomes
+
+    def _choose_packing(self, on: bool) -> None:
+        self.chosen = replace(self.chosen, compress=on)
+
+    def _collect(self) -> Contents:
+        """Return what goes into the export, as it is chosen now."""
+        project, base = self.project, self.document.folder
+        expanded, compress = (b.isChecked() and not b.isHidden() for b in (self.expanded, self.compress))
+        whole = project.character is not None and self.mesh.isChecked()
+        character = (base or Path()) / project.character if whole and project.character else None
+        return Contents(character, expanded, base, is_chosen, compress)
+
+    def _measure_soon(self) -> None:
+        self._soon.start()
+
+    def _wanted(self) -> tuple[object, ...]:
+        contents = self._collect()
+        return (self.target.name, contents.character, contents.expanded, contents.compress)
+
+    def _measure(self) -> None:
+        """Find out how large the export will be, unless that is known or something is wrong with the project.
+        What was measured for another choice is given up.
+        """
+        self._stop_measuring()
+        wanted, project, name, contents = self._wanted(), self.project, self.target.name, self._collect()
+        if wanted in self.sizes:
+            self._show_size()
+            return
+        self.sized.setText("")
+        if not self.go.isEnabled():
+            return
+        self.sized.setText(tr("Measuring the size…"))
+
+        def done(size: ExportSize | None) -> None:
+            self.sizes[wanted], self._measuring = size, None
+            self._show_size()
+
+        def work(job: WindowJob) -> ExportSize | None:
+            return measure_export(project, name, contents, job.go_on)
+
+        self._measuring = self.jobs.start("size", work, done, lambda error: done(None), quick=True)
+
+    def _stop_measuring(self) -> None:
+        self._soon.stop()
+        if self._measuring is not None:
+            self._measuring.cancel()
+            self._measuring = None
+
+    def _show_size(self) -> None:
+        size = self.sizes.get(self._wanted())
+        if size is None:
+            self.sized.setText("")
+            return
+        words = tr_plural(
+            "{size:.1f} MB in {count:,} file",
+            "{size:.1f} MB in {count:,} files",
+            size.files,
+            size=size.bytes / 1e6,
+        )
+        glb = tr("{size:.1f} MB of it in the GLB", size=size.glb / 1e6) if size.glb else ""
+        self.sized.setText(f"{words}, {glb}." if glb else f"{words}.")
+
     # --- writing
 
     def _export(self, overwrite: bool = False) -> None:
         project, folder, name = self.project, Path(self.folder.text()), self.target.name
-        base = self.document.folder
-        boxes = (self.expanded, self.vectors, self.tools, self.compress)
-        expanded, vectors, tools, compress = (box.isChecked() and not box.isHidden() for box in boxes)
-        character = (
-            (base or Path()) / project.character if project.character and self.mesh.isChecked() else None
-        )
+        vectors, tools = (box.isChecked() and not box.isHidden() for box in (self.vectors, self.tools))
+        contents = self._collect()
         self.chosen = ExportChoice(
-            name, self.chosen.folders, self.mesh.isChecked(), *(b.isChecked() for b in boxes)
+            name,
+            self.chosen.folders,
+            self.mesh.isChecked(),
+            self.expanded.isChecked(),
+            self.vectors.isChecked(),
+            self.tools.isChecked(),
+            self.chosen.compress,
         )
         QSettings().setValue(self._key(), json.dumps(asdict(self.chosen)))
         self.go.setEnabled(False)
         self.trouble.clear()
         self.progress.setRange(0, 0)
         self.progress.show()
+        self._stop_measuring()
 
         def work(job: WindowJob) -> TargetReport:
-            contents = Contents(character, expanded, base, is_chosen, compress)
             made = registry.write_for_target(project, name, folder, contents, job.go_on, overwrite)
             if vectors:
                 write_vectors(next(path for path in made.files if path.suffix == ".json"))

@@ -21,6 +21,7 @@ _ABOUT = {  # panels by page
     "animators/manual-machine.md": "manual inspector",
     "animators/perform.md": "timeline",
     "animators/props.md": "props",
+    "animators/parameters.md": "parameters",
     "animators/safety.md": "history",
     "animators/table.md": "table",
     "animators/talk.md": "conversation",

@@ -35,7 +35,9 @@ STEPS: Mapping[str, NextSteps] = {
         "engines/python",
         "python",
         'from metagraph import Character\n\ncharacter = Character("{stem}.json")\n'
-        'character.ask({"do": "gesture", "after": 1})\npose = character.update(0.0)\n',
+        'character.ask({"do": "gesture"})\n'
+        "for frame in range(150):\n    pose = character.update(frame / 30)\n"
+        "    for event in character.events():\n        print(event.kind, event.action)\n",
     ),
     "web": NextSteps(
         (
@@ -59,8 +61,10 @@ STEPS: Mapping[str, NextSteps] = {
         "js",
         'import { readFileSync } from "node:fs";\nimport { Character, load } from "./metagraph/index.js";\n\n'
         'const graph = load(readFileSync("{stem}.json", "utf8"), readFileSync("{stem}.glb"));\n'
-        'const character = new Character(graph, { seed: 7 });\ncharacter.ask({ do: "gesture", after: 1 });\n'
-        "character.update(0);\nconsole.log(character.pose());\n",
+        'const character = new Character(graph, { seed: 7 });\ncharacter.ask({ do: "gesture" });\n'
+        "for (let now = 0; now < 5; now += 1 / 30) {\n  character.update(now);\n"
+        "  for (const { kind, action } of character.events()) {\n"
+        "    console.log(now.toFixed(2), kind, action);\n  }\n}\n",
     ),
     "godot": NextSteps(
         (

@@ -28,6 +28,7 @@ from metagraph.engines.targets.godot_scene import (
 )
 from metagraph.engines.targets.godot_tree import spell_for_godot, write_animation_tree
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
+from metagraph.engines.targets.typed_wrappers import write_wrapper
 from metagraph.engines.targets.unity_humanoid import write_humanoid
 from metagraph.engines.targets.unity_package import write_package_metas
 from metagraph.errors import FileError
@@ -97,9 +98,8 @@ def _is_hidden(name: str) -> bool:
 def _with(runtime: str, under: str) -> Callable[[ExportOrder], ExportedFiles]:
     def write(order: ExportOrder) -> ExportedFiles:
         made = write_with_sounds(order)
-        return ExportedFiles(
-            (*made.files, *copy_runtime(RUNTIMES / runtime, order.folder / under)), made.notes
-        )
+        files = [*write_wrapper(order, runtime), *copy_runtime(RUNTIMES / runtime, order.folder / under)]
+        return ExportedFiles((*made.files, *files), made.notes)
 
     return write
 
@@ -126,6 +126,7 @@ def _godot(order: ExportOrder) -> ExportedFiles:
         files += [library, tree, *scene]
     for part in ("addons", "godot3"):
         files += copy_runtime(RUNTIMES / "godot" / part, folder / part)
+    files += write_wrapper(order, "gdscript")
     return ExportedFiles((*made.files, *files), made.notes)
 
 
@@ -135,7 +136,7 @@ def _unity(order: ExportOrder) -> ExportedFiles:
     package = order.folder / "Metagraph"
     files = copy_runtime(RUNTIMES / "unity", package)
     metas = write_package_metas(package, files)
-    own = [_copy_glb(order, ".metagraph")]
+    own = [_copy_glb(order, ".metagraph"), *write_wrapper(order, "csharp")]
     bones = write_humanoid(order.project)
     if bones is not None:
         own.append(order.folder / f"{order.stem}.humanoid.json")
@@ -179,6 +180,7 @@ TARGETS = (
         (BML,),
         group=phrase("Same playback as the preview"),
         unpacks=True,
+        packs=True,
     ),
     ExportTarget(
         "godot",

@@ -84,7 +84,8 @@ class ExportTarget:
 
     `name` is used on the command line, `title` in the window. `files` says in words what will be written,
     `write` writes it. `losses` are what it cannot express. `untried` says why it is experimental; it is empty
-    if it was run. `unpacks` says whether it reads packed GLBs.
+    if it was run. `unpacks` says whether it reads packed GLBs, `packs` whether they are packed unless the
+    user chooses otherwise.
     """
 
     name: str
@@ -95,6 +96,7 @@ class ExportTarget:
     untried: str = ""
     group: str = phrase("Formats")
     unpacks: bool = False
+    packs: bool = False
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from metagraph.common.wording import phrase
 from metagraph.engines.targets.runtimes import BML, RUNTIMES, copy_runtime, write_with_sounds
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
+from metagraph.engines.targets.typed_wrappers import write_wrapper
 from metagraph.engines.targets.web_tools import (
     NET,
     THREE,
@@ -43,6 +44,7 @@ def write(order: ExportOrder) -> ExportedFiles:
     page = (RUNTIMES / "web" / "index.html").read_text(encoding="utf-8")
     page = page.replace("EXPORT.json", f"{order.stem}.json")
     files = [*copy_runtime(RUNTIMES / "web" / "player", order.folder / "player")]
+    files += write_wrapper(order, "javascript")
     notes = list(made.notes)
     runtime = RUNTIMES / "javascript"
     whole = bundle_module(runtime / "element.js", (f"./{AVATAR}",)) if is_three_at_hand() else None
@@ -107,5 +109,6 @@ TARGETS = (
         ),
         group=phrase("Same playback as the preview"),
         unpacks=True,
+        packs=True,
     ),
 )

@@ -62,6 +62,7 @@ from metagraph.graph.model import (
     Stance,
     Timing,
 )
+from metagraph.graph.parameter import CharacterParameter
 from metagraph.graph.prop import Prop
 from metagraph.graph.requests import explain_invalid_ask
 from metagraph.graph.timeline import Timeline
@@ -201,6 +202,7 @@ STRUCTS: dict[str, Any] = {
     "marks": dict[str, ClipMark],
     "joint_maps": dict[str, JointMap],
     "touch": Touch,
+    "parameters": dict[str, CharacterParameter],
 }
 
 

@@ -21,7 +21,7 @@ from metagraph.graph.model import Project, Timing
 _GONE: Any = object()
 _MADE = re.compile(r"[a-z]+\d+")  # ids that the program makes
 # Values that are one thing however many fields they have: parts of two would not fit each other.
-_WHOLE = ("markov", "joint_maps", "conversations", "points")
+_WHOLE = ("markov", "joint_maps", "conversations", "points", "parameters")
 _NAMED = ("lines", "props", "performances", "timelines", "notes", "marks", "tiers", "labels")
 _SETS = ("tags", "joints", "hidden", "locked")  # lists in which the order says nothing
 _TIMES = frozenset(f.name for f in fields(Timing))
@@ -87,7 +87,8 @@ def _made(data: Any, where: str = "") -> Iterator[tuple[str, tuple[str, Any]]]:
     """
     if isinstance(data, Mapping):
         for key, value in data.items():
-            if isinstance(value, Mapping) and _MADE.fullmatch(key):
+            # Parameters have names of people's choosing for keys.
+            if isinstance(value, Mapping) and _MADE.fullmatch(key) and where != ".parameters":
                 yield key, (where, value)
             if where not in (".performances", ".timelines"):
                 yield from _made(value, f"{where}.{key}")
@@ -132,6 +133,7 @@ _KINDS = {
     "timelines": phrase("timeline"),
     "points": phrase("point"),
     "props": phrase("prop"),
+    "parameters": phrase("parameter"),
     "notes": phrase("note"),
     "marks": phrase("mark"),
     "tiers": phrase("tier"),

@@ -18,6 +18,7 @@ _NAMED = {
     "lines": phrase("Line"),
     "points": phrase("Point"),
     "props": phrase("Prop"),
+    "parameters": phrase("Parameter"),
     "performances": phrase("Performance"),
     "conversations": phrase("Conversation"),
 }

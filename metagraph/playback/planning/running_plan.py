@@ -112,11 +112,18 @@ def plan_performance(
     return join_plan(running.plan, pieces, named)
 
 
-def improvise(project: Project, end: float, seed: int | None = None, mode: Mode = "talking") -> Plan:
+def improvise(
+    project: Project,
+    end: float,
+    seed: int | None = None,
+    mode: Mode = "talking",
+    asks: Sequence[a.AnyRequest] = (),
+) -> Plan:
     """Plan what the models do by themselves from 0 to `end` seconds, while the character talks, listens or
     idles; nothing is said. The window, `render` and `check` show it talking, since gestures play only then.
+    `asks` are requested of it meanwhile.
     """
-    return plan_performance(project, [a.Behave(id="improvised-mode", at=0.0, mode=mode)], end, seed)
+    return plan_performance(project, [a.Behave(id="improvised-mode", at=0.0, mode=mode), *asks], end, seed)
 
 
 def _on(running: RunningPlan, last: float, now: float, end: float) -> None:

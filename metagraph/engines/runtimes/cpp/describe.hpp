@@ -23,7 +23,7 @@ inline Json action(const Action& action, const Phases& phases) {
 
 /// Return what may be asked for: `project`, `words` (what `do` may be), `modes`, `joints` (name, parent, part), `layers`
 /// (each `start`, `stances`, `actions` but loops of stances, `tags` with the number of their actions), `lines` (id, text),
-/// `points` by name, metres.
+/// `points` by name, metres, and, where there are any, `parameters`.
 inline Json describe(const Graph& graph) {
     Json joints = Json::list(), layers = Json::object(), lines = Json::list(), points = Json::object();
     for (std::size_t n = 0; n < graph.joints.size(); n++) {
@@ -54,10 +54,12 @@ inline Json describe(const Graph& graph) {
         lines.items.push_back(Json::object({{"id", id}, {"text", graph.lines.at(id).text}}));
     }
     for (const auto& [name, at] : graph.points) points.set(name, Json::list({at.x, at.y, at.z}));
-    return Json::object({
+    Json out = Json::object({
         {"project", graph.name}, {"words", Json::texts(asks::all_words())}, {"modes", Json::texts(words::MODES)},
         {"joints", joints}, {"layers", layers}, {"lines", lines}, {"points", points},
     });
+    if (!lang::keys(graph.parameters).empty()) out.set("parameters", parameters::describe(graph.parameters));
+    return out;
 }
 
 }  // namespace metagraph

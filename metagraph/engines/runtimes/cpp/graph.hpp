@@ -4,6 +4,7 @@
 #include "body.hpp"
 #include "contact_solve.hpp"
 #include "follow_through.hpp"
+#include "parameters.hpp"
 #include "planted_feet.hpp"
 #include "project.hpp"
 #include "voice.hpp"
@@ -77,6 +78,7 @@ struct Graph {
     Ref<Life> life = lang::made<Life>();
     Map<std::string, Vec> points;
     Map<std::string, Line> lines;
+    Map<std::string, Parameter> parameters; // what games set, by name
     Ref<Voices> voices = lang::made<Voices>();
     std::optional<Body> body;
     Ref<ContactRig> contact_rig;

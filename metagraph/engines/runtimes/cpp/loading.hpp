@@ -268,6 +268,10 @@ inline void read_speech(Graph& out, const Node& root) {
             out.lines[id] = std::move(line);
         }
     }
+    const Node parameters = root.maybe("parameters");
+    if (!parameters.empty()) {
+        for (const auto& [name, json] : parameters.fields()) out.parameters[name] = parameters::read(json);
+    }
     if (!voices.empty()) {
         for (const auto& [id, json] : voices.fields()) out.voices->known[id] = voice::read(json);
     }

@@ -1,15 +1,13 @@
 /** One character of a game: takes requests as they come, plans ahead, and is posed every frame. */
 
-import { ALPHABET } from "./alphabet.js";
 import { readAsk } from "./asks.js";
 import { describe } from "./describe.js";
 import { answers, hear, since } from "./hear.js";
 import { findLineStart } from "./items.js";
+import { Parameters } from "./parameters.js";
 import { emptyPlan } from "./plan.js";
 import { Player } from "./pose.js";
 import { SpeechWatch } from "./speech_watch.js";
-import { spokenUntil } from "./spoken_so_far.js";
-import { StreamedVoice } from "./streamed_voice.js";
 import { findForgotten, findSoon } from "./utterances.js";
 import { LAYERS } from "./words.js";
 
@@ -42,6 +40,7 @@ export class Character {
     this.asked = new Set(); // ids that the plan can tell of
     this.settled = new Map(); // answers of those it has forgotten or never heard of
     this.sounds = new Map(); // of lines that are heard, by their ids
+    this.parameters = new Parameters(graph.parameters);
     this.count = 0;
     this.speech = new SpeechWatch();
     this.seen = -Infinity; // when the update before was
@@ -78,16 +77,34 @@ export class Character {
   }
 
   /**
+   * Set a parameter of the project; returns the id of the request that this makes. A number outside of its range becomes the nearest
+   * inside, a trigger has no value, and what is set to the value that it has makes no request again. Never throws: what cannot be set
+   * is refused.
+   * @param {string} name @param {number | boolean | string | string[] | number[]} [value] as `describe().parameters` says
+   */
+  setParameter(name, value) {
+    const refuse = (why) => this.refuse(`#${(this.count += 1)}`, why);
+    return this.parameters.set(name, value, (request) => this.ask(request), refuse);
+  }
+
+  /** Return the value that a parameter was set to, else its first one; null for a trigger, undefined for an unknown name. */
+  getParameter(name) {
+    return this.parameters.get(name);
+  }
+
+  /**
    * Say a line whose sound comes in while it is said: with each call its next samples, -1..1. The lips do what is heard in them. An
    * id is one line's; returns it, as `ask` does. rate: samples a second, 8000 to 48000.
    * @param {string} id @param {ArrayLike<number>} samples @param {number} rate
    */
   saySound(id, samples, rate) {
     if (!(rate >= 8000 && rate <= 48000)) return this.refuse(id, "rate: should be a number from 8000 to 48000");
+    const { living } = this.graph;
+    if (!living) return this.refuse(id, "the part 'life' of the runtime is not loaded: load(json, glb, file, [\"life\"])");
     const begun = this.plan.track.lastSpeech(id);
     const waiting = this.queue.findIndex((ask) => ask.id === id && ask.do === "say"); // of the same update
     let voice = this.sounds.get(id);
-    if (voice?.rate !== rate || (begun === null && waiting < 0)) voice = new StreamedVoice(rate);
+    if (voice?.rate !== rate || (begun === null && waiting < 0)) voice = new living.StreamedVoice(rate);
     if (begun !== null) voice.follow(findSoon(this.now, this.graph.settings.lookahead) - findLineStart(begun));
     this.sounds.delete(id);
     this.sounds.set(id, voice);
@@ -213,7 +230,9 @@ export class Character {
    * @param {string} id @returns {{text: string, lastWord: string}}
    */
   spoken(id) {
-    const [text, lastWord] = spokenUntil(ALPHABET, this.plan.track.speeches, id, this.now);
+    const { living } = this.graph;
+    if (!living) return { text: "", lastWord: "" };
+    const [text, lastWord] = living.spokenUntil(living.ALPHABET, this.plan.track.speeches, id, this.now);
     return { text, lastWord };
   }
 

@@ -36,11 +36,6 @@ export function readContactRig(data, joints) {
   return new ContactRig(data.joints, parents, places, arms, hands, capsules, data.contacts, data.guard);
 }
 
-/** Return how much of the arms a layer moves, 0..1. @param {Record<string, number>} weights by body part */
-export function strengthOf(weights) {
-  return Math.min(1, weights.arms ?? 0);
-}
-
 /**
  * Change a pose in place so that hands are where contacts want them, and out of the body.
  * @param {import("./graph.js").Graph} graph @param {[layer, cue, place][]} playing what of each layer plays: its plan, the cue (or

@@ -2,12 +2,14 @@
 
 import { WORDS } from "./asks.js";
 import { compareText } from "./basics.js";
+import { describeParameters } from "./parameters.js";
 import { secondsPlayed } from "./repeating.js";
 import { LAYERS, MODES } from "./words.js";
 
 /**
  * Return what may be asked for: `project`, `words` (what `do` may be), `modes`, `joints` (name, parent, part), `layers` (each `start`,
- * `stances`, `actions` but loops of stances, `tags` with the number of their actions), `lines` (id, text), `points` by name, metres.
+ * `stances`, `actions` but loops of stances, `tags` with the number of their actions), `lines` (id, text), `points` by name, metres, and, where
+ * there are any, `parameters` by name (type, about, initial, least, most, choices).
  * @param {import("./graph.js").Graph} graph
  */
 export function describe(graph) {
@@ -17,6 +19,7 @@ export function describe(graph) {
     layers: Object.fromEntries(LAYERS.map((layer) => [layer, describeLayer(graph.layers[layer])])),
     lines: [...graph.lines.keys()].sort(compareText).map((id) => ({ id, text: graph.lines.get(id).text ?? "" })),
     points: Object.fromEntries(graph.points),
+    ...(Object.keys(graph.parameters).length > 0 && { parameters: describeParameters(graph.parameters) }),
   };
 }
 

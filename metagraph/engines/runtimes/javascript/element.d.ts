@@ -1,4 +1,4 @@
-import type { Answer, Ask, Character, Description, Happening } from "./index.js";
+import type { Answer, Ask, Character, Description, Happening, ParameterValue } from "./index.js";
 import type { Avatar } from "./avatar.js";
 import type { MetagraphObject } from "./three.js";
 
@@ -35,6 +35,9 @@ export class MetagraphCharacter extends HTMLElement {
   describe(): Description | null;
   /** Ask for something, before it is loaded, too; returns the request's id. */
   ask(request: Ask): string;
+  /** Set a parameter, as `Character.setParameter`; before it is loaded, too. */
+  setParameter(name: string, value?: ParameterValue): string;
+  getParameter(name: string): ParameterValue | null | undefined;
   answer(id: string): Answer;
   /** Say something, with its sound where there is one; returns a promise of the request's id. */
   say(text: string, options?: SayOptions): Promise<string>;

@@ -8,7 +8,7 @@
  * taken off, and `begin` and `end` of what is performed and said, as `Character.events` tells them, in `detail`.
  */
 
-import { load } from "./graph.js";
+import { load } from "./load.js";
 import { Sounds } from "./sounds.js";
 import { Stage, readGlb } from "./stage.js";
 import { StreamedVoice } from "./streamed_voice.js";
@@ -60,6 +60,7 @@ export class MetagraphCharacter extends HTMLElement {
     this.sounds = null;
     this.coming = null; // the look that is loaded
     this.waiting = []; // asked for before it was loaded
+    this.preset = new Map(); // parameters that were set before
     this.talk = null; // what it says, with gestures
     this.early = 0;
     this.said = 0;
@@ -148,6 +149,8 @@ export class MetagraphCharacter extends HTMLElement {
       if (this.hasAttribute("mood")) this.object.ask({ do: "mood", mood: this.getAttribute("mood") });
       if (!this.hasAttribute("aria-label")) this.canvas.setAttribute("aria-label", graph.name);
       for (const request of this.waiting.splice(0)) this.object.ask(request);
+      for (const [name, value] of this.preset) this.object.setParameter(name, value);
+      this.preset.clear();
       await this.wear(this.coming);
       if (this.opening !== opening) return;
       stage.view(this.getAttribute("camera") ?? "");
@@ -269,6 +272,18 @@ export class MetagraphCharacter extends HTMLElement {
     const id = request?.id || `early#${(this.early += 1)}`;
     this.waiting.push({ ...request, id });
     return id;
+  }
+
+  /** Set a parameter, as of a Character; before it is loaded, too, and then its latest value counts. Returns the request's id, "" before. */
+  setParameter(name, value) {
+    if (this.object) return this.object.setParameter(name, value);
+    this.preset.set(name, value);
+    return "";
+  }
+
+  /** The value of a parameter, as of a Character; undefined before it is loaded. @param {string} name */
+  getParameter(name) {
+    return this.character?.getParameter(name);
   }
 
   /** What became of a request. @param {string} id */

@@ -1,6 +1,5 @@
 /** Reading the export's GLB: joint nodes and animations, as far as a runtime needs them. */
 
-import { MeshoptError, unpacked } from "./meshopt.js";
 import { normalize, slerp } from "./rotation.js";
 
 const [HEADER, JSON_CHUNK, BIN_CHUNK, MAGIC] = [12, 0x4e4f534a, 0x004e4942, 0x46546c67];
@@ -39,6 +38,7 @@ export class Glb {
     this.nodes = this.document.nodes ?? [];
     this.animations = this.document.animations ?? [];
     this.unpacked = new Map(); // views
+    this.packing = null; // the part of the runtime that unpacks them
   }
 
   /** Return where an accessor's values lie and how they are read. Throws GlbError for what is not read here, or not there. */
@@ -61,6 +61,7 @@ export class Glb {
     if (!this.unpacked.has(view)) {
       const { buffer, byteOffset: from, byteLength: size } = this.binary;
       if (byteOffset + byteLength > size) throw new GlbError("is cut short");
+      const { MeshoptError, unpacked } = this.packing;
       try {
         this.unpacked.set(view, new DataView(unpacked(new Uint8Array(buffer, from + byteOffset, byteLength), count, byteStride, mode, filter).buffer));
       } catch (error) {

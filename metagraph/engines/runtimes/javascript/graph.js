@@ -1,17 +1,15 @@
 /** The exported graph and its clips, loaded once and shared by all characters that use them. */
 
-import { readContactRig, readContacts, strengthOf } from "./contacts.js";
-import { readBody } from "./life/body.js";
 import { Offsets, readClips } from "./clips.js";
 import { Glb, GlbError } from "./glb.js";
 import { hear } from "./hear.js";
 import { readLife } from "./life.js";
 import { Markov, Settings, Stance, Timing } from "./model.js";
+import { readParameters } from "./parameters.js";
 import { Phases } from "./phase_times.js";
 import { emptyPlan } from "./plan.js";
 import { morphsAt, poseAt } from "./pose.js";
 import { Voices } from "./voice.js";
-import { readArmTracks, readFootTracks, readWeightRig } from "./weight.js";
 import { LAYERS, inRange } from "./words.js";
 
 export const FORMAT = 1; // the newest version of the export that is read here
@@ -25,14 +23,11 @@ export class MetagraphError extends Error {
 }
 
 /**
- * Return the graph of an export.
- *
- * A clip that the GLB lacks is no error: `graph.problems` lists it, and its actions show their stance.
- * @param {string} json the export's text @param {Uint8Array | ArrayBuffer} glb the bytes of its GLB
- * @param {string} [file] what to call the JSON in errors @returns {Graph}
- * @throws {MetagraphError} when it is newer than this runtime, or no export, or its GLB is truncated or another's
+ * Return the graph of an export. choose: gives the parts (see parts.js) for what the JSON and the GLB say, null to make no graph.
+ * @param {string} json @param {Uint8Array | ArrayBuffer} glb @param {string} file
+ * @param {(data: object, document: object) => ?import("./parts.js").Parts} choose @returns {?Graph} @throws {MetagraphError}
  */
-export function load(json, glb, file = "the export") {
+export function read(json, glb, file, choose) {
   let data;
   try {
     data = JSON.parse(json);
@@ -50,7 +45,11 @@ export function load(json, glb, file = "the export") {
     if (typeof value !== "object" || value === null) throw new MetagraphError(file, field, "is missing", "Export it again.");
   }
   try {
-    return tried(new Graph(data, new Glb(glb)));
+    const opened = new Glb(glb);
+    const parts = choose(data, opened.document);
+    if (parts === null) return null;
+    opened.packing = parts.packing ?? null;
+    return tried(new Graph(data, opened, parts));
   } catch (error) {
     const again = "Export it again, and copy both files.";
     if (error instanceof GlbError) throw new MetagraphError(data.glb ?? "the GLB", "", error.message, again);
@@ -76,8 +75,11 @@ function otherGlb(data, bytes) {
 
 /** Everything of an export that planning and posing need. Joints are told by their place; layers by name, in the order of LAYERS. */
 export class Graph {
-  /** @param {object} data the export @param {Glb} glb */
-  constructor(data, glb) {
+  /** @param {object} data the export @param {Glb} glb @param {import("./parts.js").Parts} parts */
+  constructor(data, glb, parts) {
+    this.touching = parts.touching ?? null; // parts of the runtime, null where the export does not need them
+    this.living = parts.life ?? null;
+    this.weighing = parts.weighing ?? null;
     const p = data.planner;
     const constant = (name, usual, low = 0, high = 1e9) => inRange(p[name] ?? usual, low, high, `planner.${name}`);
     this.name = data.name;
@@ -100,6 +102,7 @@ export class Graph {
     this.life = readLife(data.life);
     this.points = new Map(Object.entries(data.points ?? {}));
     this.lines = new Map(Object.entries(data.lines ?? {}));
+    this.parameters = readParameters(data.parameters); // what games set, by name
     this.voices = new Voices(data.voices);
     this.unmade = []; // offsets that nobody has needed yet
     if (Number.isInteger(data.glb_bytes) && glb.byteLength !== data.glb_bytes) this.problems.push(otherGlb(data, glb.byteLength));
@@ -107,12 +110,12 @@ export class Graph {
     const durations = new Map(data.clips.map((clip) => [clip.id, (clip.frames - 1) / clip.fps]));
     const layerGraph = (layer) => new LayerGraph(layer, data.layers[layer], data.joints, durations, this);
     this.layers = Object.fromEntries(LAYERS.map((layer) => [layer, layerGraph(layer)]));
-    this.body = data.rig ? readBody(data.rig) : null;
-    this.contactRig = readContactRig(data.contact_rig, this.joints);
-    this.weightRig = readWeightRig(data.weight_rig, this.joints.length);
-    this.armTracks = readArmTracks(this.layers, data.clips);
+    this.body = data.rig && this.living ? this.living.readBody(data.rig) : null;
+    this.contactRig = this.touching?.readContactRig(data.contact_rig, this.joints) ?? null;
+    this.weightRig = this.weighing?.readWeightRig(data.weight_rig, this.joints.length) ?? null;
+    this.armTracks = this.weighing?.readArmTracks(this.layers, data.clips) ?? new Map();
     this.feetLayer = data.weight_rig?.feet_layer in this.layers ? data.weight_rig.feet_layer : "body"; // it moves the legs
-    this.footTracks = readFootTracks(this.layers[this.feetLayer], data.clips);
+    this.footTracks = this.weighing?.readFootTracks(this.layers[this.feetLayer], data.clips) ?? new Map();
     const own = [...this.clips.values()].flatMap((clip) => clip.morphs.map((morph) => morph.name));
     /** Names of all morph targets that anything here moves. */
     this.morphs = [...new Set([...own, ...(this.body?.face.morphs ?? []).map((morph) => morph.name)])];
@@ -146,7 +149,7 @@ export class LayerGraph {
     this.layer = layer;
     this.start = data.start;
     this.stances = new Map(data.stances.map(({ id, name }) => [id, new Stance(id, layer, name)]));
-    this.strength = strengthOf(data.weights);
+    this.strength = Math.min(1, data.weights.arms ?? 0); // how much of the arms it moves, 0..1
     const weights = joints.map((joint) => data.weights[joint.part] ?? 0);
     /** Places of the joints this layer moves [n], and its weights on them, null where all are 1. */
     this.reach = Int32Array.from(joints.keys()).filter((joint) => weights[joint] > 0);
@@ -202,7 +205,7 @@ export class LayerGraph {
     const partly = Array.from(this.reach, (joint, place) => [place, moves(joints[joint])]).filter(([, weight]) => weight < 1);
     return {
       id, name, clip, kind, layer: this.layer, stance, limb, likelihood: number("likelihood"), start, end, motion,
-      tags: data.tags, joints: data.joints, jointWeights: weights, contacts: readContacts(data.contacts),
+      tags: data.tags, joints: data.joints, jointWeights: weights, contacts: graph.touching?.readContacts(data.contacts) ?? [],
       endStance: data.end_stance ?? null,
       timing: new Timing(
         start, end, number("blend_in"), number("blend_out"), kind === "stance", data.earliest_exit ?? null, null, null, null, null, number("repeat", 0),

@@ -101,7 +101,7 @@ export function since(plan, seconds) {
     reports: plan.reports.filter((r) => r.at >= seconds),
     requests: plan.requests.filter((r) => r.start >= seconds || known.has(r.id)),
     track: plan.track.since(seconds),
-    life: plan.life.since(seconds),
+    life: plan.life?.since(seconds) ?? null,
   };
 }
 

@@ -95,7 +95,23 @@ export interface Description {
   >;
   readonly lines: readonly { readonly id: string; readonly text: string }[];
   readonly points: Readonly<Record<string, Point>>;
+  /** What games set, by name; not there where an export has none. */
+  readonly parameters?: Readonly<Record<string, ParameterDescription>>;
 }
+
+/** A parameter: a named value of the character that a game sets. */
+export interface ParameterDescription {
+  readonly type: "number" | "boolean" | "enum" | "list" | "point" | "trigger";
+  readonly about: string;
+  /** Its value until it is set; a trigger has none. */
+  readonly initial?: ParameterValue;
+  readonly least?: number;
+  readonly most?: number;
+  readonly choices?: readonly string[];
+}
+
+/** Of a number, a switch, a choice, a list of choices or a point, metres. */
+export type ParameterValue = number | boolean | string | readonly string[] | readonly number[];
 
 /** Return what may be asked of any character of a graph. */
 export function describe(graph: Graph): Description;
@@ -294,6 +310,10 @@ export class Character {
   describe(): Description;
   /** Ask for something; returns its id. It is taken up at the next update. */
   ask(request: Ask): string;
+  /** Set a parameter, a trigger without a value; returns the id of the request that this makes. What cannot be set is refused. */
+  setParameter(name: string, value?: ParameterValue): string;
+  /** The value that a parameter was set to, else its first one; null for a trigger, undefined for a name that is not known. */
+  getParameter(name: string): ParameterValue | null | undefined;
   /** Say a line whose sound comes in while it is said, a piece with each call: samples -1..1, `rate` a second, 8000 to 48000. Returns its id. */
   saySound(id: string, samples: ArrayLike<number>, rate: number): string;
   /** Move on to `now`, seconds of the character's own time, which begins at 0. */

@@ -3,7 +3,8 @@
 export { key32 } from "./choice.js";
 export { Character } from "./character.js";
 export { describe } from "./describe.js";
-export { FORMAT, Graph, MetagraphError, load } from "./graph.js";
+export { FORMAT, Graph, MetagraphError } from "./graph.js";
+export { load } from "./load.js";
 export { answers, hear, since } from "./hear.js";
 export { emptyPlan, keyOf } from "./plan.js";
 export { Player, morphsAt, poseAt } from "./pose.js";

@@ -7,19 +7,18 @@
  * @typedef {import("./meta_plan.js").Cue} Cue
  * @typedef {import("./meta_plan.js").LayerPlan} LayerPlan
  * @typedef {{seed: number, end: number, layers: Record<string, LayerPlan>, reports: Report[], requests: Request[], track: import("./track.js").Track,
- *   life: import("./schedule.js").Schedule}} Plan
+ *   life: ?import("./schedule.js").Schedule}} Plan
  */
 
 import { cueSeconds } from "./cue_times.js";
 import { LayerPlan } from "./meta_plan.js";
-import { Schedule } from "./schedule.js";
 import { Track } from "./track.js";
 import { LAYERS } from "./words.js";
 
 /** Return a plan of nothing, up to 0 seconds. @param {number} seed 32 bits @returns {Plan} */
 export function emptyPlan(seed) {
   const layers = Object.fromEntries(LAYERS.map((name) => [name, new LayerPlan(name)]));
-  return { seed: seed >>> 0, end: 0, layers, reports: [], requests: [], track: new Track(), life: new Schedule() };
+  return { seed: seed >>> 0, end: 0, layers, reports: [], requests: [], track: new Track(), life: null };
 }
 
 /** What keys a meta action's random draws. @param {MetaAction} meta */

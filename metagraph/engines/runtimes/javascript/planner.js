@@ -6,7 +6,6 @@
  */
 
 import { draft } from "./layer_planning.js";
-import { schedule } from "./schedule.js";
 import { moodsOf } from "./wanted.js";
 import { LAYERS } from "./words.js";
 
@@ -47,6 +46,11 @@ export function extend(graph, plan, now, requests, end, { stances = {}, idle = t
     seed: plan.seed, end, layers, track: plan.track,
     reports: reports.sort((a, b) => a.at - b.at),
     requests: [...plan.requests.filter((r) => !again.has(r.id)), ...fresh],
-    life: schedule(graph.life, plan.track, graph.voices, plan.seed, end, plan.life, now),
+    life: livedOn(graph, plan, end, now),
   };
+}
+
+/** Return the events of life up to `end`; null where the graph has none. */
+function livedOn({ living, life, voices }, plan, end, now) {
+  return living ? living.schedule(life, plan.track, voices, plan.seed, end, plan.life ?? new living.Schedule(), now) : null;
 }

@@ -4,14 +4,11 @@
  * added, and hands kept in contact and out of the body.
  */
 
-import { ease } from "./life/gaze.js";
-import { Enlivener, SHOWN } from "./life/evaluate.js";
-import { touch } from "./contacts.js";
 import { turnExtent } from "./mood.js";
 import { seamLeft } from "./cue_times.js";
 import { clipSeconds } from "./plan.js";
-import { multiply, nlerp, normalize, power } from "./rotation.js";
-import { Swaying } from "./weight.js";
+import { ease, multiply, nlerp, normalize, power } from "./rotation.js";
+import { SHOWN } from "./shown.js";
 import { LAYERS } from "./words.js";
 
 // A clip is led while no joint is farther from the stance than the first, and crossfaded where one is farther than the second: cosines
@@ -32,7 +29,7 @@ class Room {
     this.spare = sample();
     this.turn = new Float64Array(4);
     this.base = { rotations: Float64Array.from(graph.baseRotations), translations: Float64Array.from(graph.baseTranslations) };
-    this.life = graph.body ? new Enlivener(graph) : null;
+    this.life = graph.body ? new graph.living.Enlivener(graph) : null;
     this.found = { player: null, plan: null, time: 0 }; // what `life` has found last
   }
 }
@@ -55,7 +52,7 @@ export class Player {
     this.graph = graph;
     this.room = roomOf(graph);
     this.cursors = LAYERS.map(() => ({ cue: 0, rest: 0 }));
-    this.swaying = graph.weightRig ? new Swaying(graph) : null;
+    this.swaying = graph.weightRig ? new graph.weighing.Swaying(graph) : null;
     this.setPlan(plan);
   }
 
@@ -82,7 +79,7 @@ export class Player {
       this.find(time);
       life.apply(pose.rotations, pose.translations);
     }
-    if (this.graph.contactRig) touch(this.graph, this.playing(time), time, pose.rotations, pose.translations);
+    if (this.graph.contactRig) this.graph.touching.touch(this.graph, this.playing(time), time, pose.rotations, pose.translations);
     rotations.set(pose.rotations);
     translations.set(pose.translations);
   }
@@ -151,12 +148,12 @@ export class Player {
   /** Let the body in the composed pose answer its arms. */
   weigh(time) {
     const { rotations, translations } = this.room.pose;
-    if (!this.swaying || !this.graph.life.on || this.plan.life.end <= 0) return;
+    if (!this.swaying || !this.graph.life.on || !(this.plan.life?.end > 0)) return;
     this.swaying.answer(this.plan, (at, name) => this.playingIn(at, name), time, rotations, translations);
   }
 
   get lives() {
-    return this.graph.life.on && this.graph.body !== null && this.plan.life.end > 0;
+    return this.graph.life.on && this.graph.body !== null && this.plan.life?.end > 0;
   }
 
   /** Leave the composed pose at a time in the room, without the life layers. */

@@ -3,6 +3,9 @@
  * is read. `multiply(a, b)` applies b first, then a. Nothing is allocated.
  */
 
+/** 3x^2 - 2x^3 of x clamped to 0..1. @param {number} x */
+export const ease = (x) => (x <= 0 ? 0 : x >= 1 ? 1 : x * x * (3 - 2 * x));
+
 /** out[o..] = a[i..] * b[j..]; may write where it reads. */
 export function multiply(out, o, a, i, b, j) {
   const ax = a[i], ay = a[i + 1], az = a[i + 2], aw = a[i + 3];

@@ -1,5 +1,5 @@
 import type { Avatar } from "./avatar.js";
-import type { Answer, Ask, Character, CharacterOptions, Graph, Happening } from "./index.js";
+import type { Answer, Ask, Character, CharacterOptions, Graph, Happening, ParameterValue } from "./index.js";
 
 /** A character that moves the bones and morph targets of a scene that three.js loaded. */
 export class MetagraphObject {
@@ -11,6 +11,9 @@ export class MetagraphObject {
   /** Joints and morph targets that the scene lacks, or that move nothing of the avatar. */
   readonly missing: readonly string[];
   ask(request: Ask): string;
+  /** Set a parameter, as `Character.setParameter`. */
+  setParameter(name: string, value?: ParameterValue): string;
+  getParameter(name: string): ParameterValue | null | undefined;
   /** Say a line whose sound comes in, as `Character.saySound`. */
   saySound(id: string, samples: ArrayLike<number>, rate: number): string;
   answer(id: string): Answer;

@@ -55,6 +55,15 @@ export class MetagraphObject {
     return this.character.ask(request);
   }
 
+  /** Set a parameter, and return one's value, as of a Character. @param {string} name */
+  setParameter(name, value) {
+    return this.character.setParameter(name, value);
+  }
+
+  getParameter(name) {
+    return this.character.getParameter(name);
+  }
+
   /** As of a Character. @param {string} id @param {ArrayLike<number>} samples @param {number} rate */
   saySound(id, samples, rate) {
     return this.character.saySound(id, samples, rate);

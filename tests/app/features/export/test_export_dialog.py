@@ -115,16 +115,40 @@ def test_a_glb_is_packed_where_that_is_asked_for_and_its_target_reads_it(toys, t
     drive = toys
     dialog = opened(drive)
     pick(drive, dialog, "javascript")
+    assert dialog.compress.isChecked(), "its runtime unpacks it"
+    pick(drive, dialog, "cpp")
     assert not dialog.compress.isChecked()
     QTest.mouseClick(dialog.compress, Qt.MouseButton.LeftButton, pos=QPoint(8, dialog.compress.height() // 2))
     assert dialog.compress.isChecked()
-    for name, packed in (("javascript", True), ("godot", False)):
+    for name, packed in (("cpp", True), ("godot", False), ("javascript", True)):
         pick(drive, dialog, name)
         put(dialog, str(tmp_path / name))
         QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
         drive.wait(lambda: dialog.open_button.isEnabled(), 60)
         (glb,) = (tmp_path / name).glob("*.glb")
         assert (b"EXT_meshopt_compression" in glb.read_bytes()) == packed
+    dialog.reject()
+
+
+def test_the_size_is_told_before_anything_is_written(toys, tmp_path):
+    drive = toys
+    dialog = opened(drive)
+    pick(drive, dialog, "javascript")
+    drive.wait(lambda: "MB in" in dialog.sized.text(), 60)
+    packed = dialog.sized.text()
+    assert "of it in the GLB" in packed
+    QTest.mouseClick(dialog.compress, Qt.MouseButton.LeftButton, pos=QPoint(8, dialog.compress.height() // 2))
+    drive.wait(lambda: dialog._wanted() in dialog.sizes, 60)
+    put(dialog, str(tmp_path / "game"))
+    QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: dialog.open_button.isEnabled(), 60)
+    written = sum(path.stat().st_size for path in (tmp_path / "game").rglob("*") if path.is_file())
+    told = dialog.sizes[dialog._wanted()]
+    record = next((tmp_path / "game").glob(".metagraph-export.json"), None)
+    kept = record.stat().st_size if record is not None else 0
+    assert told.bytes == written - kept
+    pick(drive, dialog, "xstate")
+    drive.wait(lambda: "MB in" in dialog.sized.text() and dialog.target.name == "xstate", 60)
     dialog.reject()
 
 

@@ -3,7 +3,7 @@
  * life layers, by VRM's expressions or by targets named as ARKit or Oculus name them.
  */
 
-import { SHOWN } from "../life/evaluate.js";
+import { SHOWN } from "../shown.js";
 
 // Channel -> VRM's expressions with shares, of its five vowels above all; an expression of the whole face shows half.
 const EXPRESSIONS = {

@@ -10,10 +10,11 @@
 import { bisect } from "../basics.js";
 import { FaceShown, answer, settle, shownFace } from "../expressions.js";
 import { Bearing, bearing, shown, shutIn } from "../mood.js";
-import { fromVector, multiply } from "../rotation.js";
+import { ease, fromVector, multiply } from "../rotation.js";
 import { HALF } from "../schedule.js";
+import { SHOWN } from "../shown.js";
 import { CHANNELS, LIDS, MOUTH } from "../words.js";
-import { Gaze, ease } from "./gaze.js";
+import { Gaze } from "./gaze.js";
 import { mouthAt } from "./lips.js";
 import { Solver, lid, partAlong } from "./solve.js";
 
@@ -25,10 +26,6 @@ const MORPH_WIDE = 0.6; // of a target that opens wide, for a lid as far open as
 const BLINK = LIDS.length; // place among CHANNELS
 const VISEME = CHANNELS.length - 14; // place of the first mouth shape but silence
 
-const FEELS = ["smile", "frown", "brow_down", "brow_up", "brows", "cheeks"];
-const SIDED = ["blink", "wide", "look_left", "look_right", "look_up", "look_down"];
-/** What morph targets stand for, in the order in which `work` works it out. */
-export const SHOWN = ["blink", ...["left", "right"].flatMap((side) => SIDED.map((what) => `${what}_${side}`)), ...MOUTH, ...FEELS];
 const UNMOVED = new Bearing();
 
 /** What the life layers make of one body: `find` works a time out, `apply` and `morphs` use what it found. */

@@ -8,6 +8,7 @@
  */
 
 import { begunBy, bisect } from "../basics.js";
+import { ease } from "../rotation.js";
 import { AHEAD, PARTNER } from "../wanted.js";
 
 const [EYE_TIME, EYE_TIME_PER_DEGREE] = [0.021, 0.0022]; // seconds
@@ -17,9 +18,6 @@ const ENDING = 0.12; // seconds in which a new look ends an aversion
 const SPRING = 8; // how many of the spring's own times a move takes; then all but 0.3 % is done
 const SETTLED = 1 - (1 + SPRING) * Math.exp(-SPRING);
 const RADIANS = Math.PI / 180;
-
-/** 3x^2 - 2x^3 of x clamped to 0..1. @param {number} x */
-export const ease = (x) => (x <= 0 ? 0 : x >= 1 ? 1 : x * x * (3 - 2 * x));
 
 /** A critically damped spring's way from 0 to 1, for x from 0 to 1. @param {number} x */
 const settle = (x) => (x <= 0 ? 0 : x >= 1 ? 1 : (1 - (1 + SPRING * x) * Math.exp(-SPRING * x)) / SETTLED);

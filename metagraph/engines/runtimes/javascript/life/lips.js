@@ -4,7 +4,7 @@ import { begunBy } from "../basics.js";
 import { findLineStart } from "../items.js";
 import { soften } from "../mouth.js";
 import { VISEMES } from "../words.js";
-import { ease } from "./gaze.js";
+import { ease } from "../rotation.js";
 
 const CLOSING = 0.12; // seconds the mouth takes to close where speech was cut
 const COUNT = VISEMES.length;

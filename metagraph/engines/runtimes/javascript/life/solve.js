@@ -1,7 +1,6 @@
 /** One pose brought to life: how head, eyes and lids turn. Rotations are quaternions xyzw, angles radians; nothing is allocated. */
 
-import { multiply, rotate } from "../rotation.js";
-import { ease } from "./gaze.js";
+import { ease, multiply, rotate } from "../rotation.js";
 
 const RADIANS = Math.PI / 180;
 const SMALL = 15 * RADIANS; // of a turn smaller than this the head takes next to nothing

@@ -135,6 +135,17 @@ func describe() -> Dictionary:
 	return character.describe() if character != null else {}
 
 
+## Sets a parameter of the project to a number, a bool, a String, an Array of Strings, a Vector3, or nothing for a trigger. Returns the id
+## of the request that this makes.
+func set_parameter(parameter: String, value = null) -> String:
+	return character.set_parameter(parameter, value) if character != null else ""
+
+
+## Returns the value that a parameter was set to, else its first one; null where there is none of that name.
+func get_parameter(parameter: String):
+	return character.get_parameter(parameter) if character != null else null
+
+
 ## Asks for a gesture with all of these tags.
 func gesture(tags: Array = [], more: Dictionary = {}) -> String:
 	return _ask("gesture", {"tags": tags}, more)

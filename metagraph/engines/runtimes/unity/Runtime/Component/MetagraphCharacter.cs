@@ -232,6 +232,12 @@ namespace Metagraph
             return character == null ? null : character.Describe();
         }
 
+        /// <summary>Set a parameter of the project, see `Character.SetParameter`; null while nothing is loaded.</summary>
+        public string SetParameter(string parameter, object value = null)
+        {
+            return character == null ? null : character.SetParameter(parameter, value);
+        }
+
         /// <summary>Make a gesture that has all the tags.</summary>
         public string Gesture(params string[] tags)
         {

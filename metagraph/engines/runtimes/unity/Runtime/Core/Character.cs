@@ -53,6 +53,7 @@ namespace Metagraph
         private readonly Dictionary<string, List<object>> streaming = new Dictionary<string, List<object>>(); // shapes of this update
         private List<CharacterEvent> events = new List<CharacterEvent>();
         private int count;
+        private readonly ParameterValues parameters;
         private readonly SpeechWatch speech = new SpeechWatch();
         private double seen = double.NegativeInfinity, cutAt;
 
@@ -60,6 +61,7 @@ namespace Metagraph
         {
             Graph = graph;
             this.options = options ?? new CharacterOptions();
+            parameters = new ParameterValues(graph.Parameters);
             player = new Player(graph);
             pose = new BodyPose(graph);
             Plan = Plan.Empty(this.options.Seed ?? graph.Settings.Seed);
@@ -105,6 +107,35 @@ namespace Metagraph
                 Settle(new Answer { Id = id, State = "refused", Why = error.Message });
             }
             return id;
+        }
+
+        /// <summary>
+        /// Set a parameter of the project to a number, a bool, a string, several strings, or three numbers; null for a trigger. Returns
+        /// the id of the request that this makes. A number outside of its range becomes the nearest inside, and what is set to the value
+        /// that it has makes no request again. What cannot be set is refused: see `AnswerTo`.
+        /// </summary>
+        public string SetParameter(string name, object value = null)
+        {
+            try
+            {
+                return parameters.Set(name, value, Ask);
+            }
+            catch (AskException error)
+            {
+                count++;
+                string id = "#" + count.ToString(CultureInfo.InvariantCulture);
+                Settle(new Answer { Id = id, State = "refused", Why = error.Message });
+                return id;
+            }
+        }
+
+        /// <summary>
+        /// The value that a parameter was set to, else its first one: double, bool, string, or List of object; null for a trigger, and
+        /// where there is none of that name.
+        /// </summary>
+        public object GetParameter(string name)
+        {
+            return parameters.Get(name);
         }
 
         /// <summary>

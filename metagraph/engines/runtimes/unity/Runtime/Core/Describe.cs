@@ -8,7 +8,8 @@ namespace Metagraph
     {
         /// <summary>
         /// What may be asked for, as JSON: "project", "words" (what "do" may be), "modes", "joints", "layers" (each "start", "stances",
-        /// "actions" but loops of stances, "tags" with the number of their actions), "lines", "points" by name, metres.
+        /// "actions" but loops of stances, "tags" with the number of their actions), "lines", "points" by name, metres, and, where there are
+        /// any, "parameters" by name.
         /// </summary>
         public string Describe()
         {
@@ -34,9 +35,19 @@ namespace Metagraph
             {
                 points[point.Key] = new List<object>(System.Array.ConvertAll(point.Value, x => (object)x));
             }
-            return Json.Write(Record(
+            var parameters = new JsonObject();
+            foreach (KeyValuePair<string, Parameter> one in Parameters)
+            {
+                parameters[one.Key] = one.Value.Described();
+            }
+            JsonObject found = Record(
                 "project", Name, "words", new List<object>(Ask.AllWords), "modes", new List<object>(Basics.Modes), "joints", joints,
-                "layers", layers, "lines", lines, "points", points));
+                "layers", layers, "lines", lines, "points", points);
+            if (Parameters.Count > 0)
+            {
+                found["parameters"] = parameters;
+            }
+            return Json.Write(found);
         }
 
         private static JsonObject Told(LayerGraph graph)

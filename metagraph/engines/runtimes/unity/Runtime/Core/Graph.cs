@@ -166,6 +166,8 @@ namespace Metagraph
         public string FeetLayer = "body"; // it moves the legs
         public readonly Dictionary<string, double[]> Points = new Dictionary<string, double[]>();
         public readonly Dictionary<string, Line> Lines = new Dictionary<string, Line>();
+        /// <summary>What games set, by name.</summary>
+        public readonly Dictionary<string, Parameter> Parameters = new Dictionary<string, Parameter>();
         public readonly Voices Voices = new Voices();
         /// <summary>Names of all morph targets that clips or the face may move; poses have a weight for each.</summary>
         public readonly List<string> Morphs = new List<string>();

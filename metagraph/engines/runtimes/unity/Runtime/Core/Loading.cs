@@ -72,6 +72,7 @@ namespace Metagraph
                 }
             }
             ReadLines(root);
+            ReadParameters(root);
             string glb = root["glb"].Text;
             if (root.Maybe("glb_bytes", out found) && !found.IsNull && found.Count != data.Length)
             {
@@ -293,6 +294,18 @@ namespace Metagraph
                 throw state.Wrong("should be a limb and a kind");
             }
             return both[place];
+        }
+
+        private void ReadParameters(Node root)
+        {
+            Node found;
+            if (root.Maybe("parameters", out found))
+            {
+                foreach (string name in found.Names)
+                {
+                    Parameters[name] = Parameter.Read(found[name]);
+                }
+            }
         }
 
         private void ReadLines(Node root)

@@ -7,6 +7,7 @@ const Describe = preload("describe.gd")
 const Answers = preload("answers.gd")
 const Hear = preload("hear.gd")
 const Items = preload("items.gd")
+const Parameters = preload("parameters.gd")
 const Planner = preload("planner.gd")
 const Pose = preload("pose.gd")
 const SpeechWatch = preload("speech_watch.gd")
@@ -33,6 +34,7 @@ var _asked = {}  # ids that the plan can tell of
 var _settled = {}  # answers of those it has forgotten or never heard of
 var _sounds = {}  # of lines that are heard, by their ids
 var _count = 0
+var _parameters
 var _forgot_at = 0.0
 var _speech = SpeechWatch.SpeechWatch.new()
 var _seen = -1.0  # when the update before was
@@ -49,6 +51,7 @@ func _init(read_graph, options = {}):
 	ahead = float(options.get("ahead", 20.0))
 	recent = float(options.get("recent", 30.0))
 	plan = Planner.empty_plan(int(options.get("seed", graph.settings.get("seed32", 1))))
+	_parameters = Parameters.new(graph.parameters)
 	if graph.error == "":
 		plan = Hear.hear(graph, plan, 0.0, [], ahead, stances, idle)
 
@@ -84,6 +87,25 @@ func ask(request):
 	_asked[ident] = true
 	_queue.append(found[0])
 	return ident
+
+
+# Sets a parameter of the project; returns the id of the request that this makes. A number outside of its range becomes the nearest inside,
+# a trigger has no value, and what is set to the value that it has makes no request again. What cannot be set is refused.
+func set_parameter(name, value = null):
+	var found = _parameters.request_for(name, value)
+	if found[1] != "":
+		_count += 1
+		return _refuse("#%d" % _count, found[1])
+	if found[0] == null:
+		return _parameters.made[name]
+	var ident = ask(found[0])
+	_parameters.made[name] = ident
+	return ident
+
+
+# Returns the value that a parameter was set to, else its first one; null for a trigger, and where there is none of that name.
+func get_parameter(name):
+	return _parameters.value_of(name)
 
 
 # Says a line whose sound comes in while it is said: with each call its next samples, -1..1. The lips do what is heard in them. An id

@@ -5,9 +5,9 @@ const Util = preload("util.gd")
 const EXPORT = {joints = "list", base = "record", clips = "list", layers = "record", planner = "record"}
 const OPTIONAL = {
 	life = "record?", face = "record?", points = "record?", lines = "record?", voices = "record?", rig = "record?", contact_rig = "record?",
-	weight_rig = "record?"
+	weight_rig = "record?", parameters = "record?"
 }
-const EMPTY = ["life", "face", "points", "lines", "voices"]  # where these are not there
+const EMPTY = ["life", "face", "points", "lines", "voices", "parameters"]  # where these are not there
 const BASE = {rotations = "list", translations = "list"}
 const JOINT = {name = "text", parent = "text?", part = "text", side = "text", translation = "3", rotation = "4", scales = "text?"}
 const CLIP = {id = "text", name = "text", animation = "number", fps = "number", frames = "number", arms = "list?", feet = "list?"}
@@ -45,6 +45,12 @@ const COLLAR = {place = "number", upper = "number", axis = "3", side = "number"}
 const CONTACT = {
 	hand = "text", place = "text", to = "text", start = "number", end = "number", ease_in = "number", ease_out = "number", keys = "list"
 }
+const PARAMETER = {
+	type = "text", request = "record", field = "text?", about = "text?", choices = "list?", least = "number?", most = "number?", beside = "list?",
+	replaces = "list?"
+}
+const CHOICE = {name = "text"}
+const PARAMETER_TYPES = ["number", "boolean", "enum", "list", "point", "trigger"]
 const VOICE = {duration = "number", accents = "list", weights = "list"}
 
 
@@ -83,6 +89,11 @@ static func wrong(data):
 		checks.append([weighing.get("collars"), COLLAR, "$.weight_rig.collars"])
 	if typeof(data.voices) == TYPE_DICTIONARY:
 		checks.append([data.voices.values(), VOICE, "$.voices"])
+	if typeof(data.parameters) == TYPE_DICTIONARY:
+		checks.append([data.parameters.values(), PARAMETER, "$.parameters"])
+		for name in data.parameters:
+			if typeof(data.parameters[name]) == TYPE_DICTIONARY and data.parameters[name].get("choices") != null:
+				checks.append([data.parameters[name].choices, CHOICE, "$.parameters.%s.choices" % name])
 	for check in checks:
 		var out = _lack(check[0], check[1], check[2])
 		if out != "":
@@ -92,6 +103,20 @@ static func wrong(data):
 
 # Returns what does not fit together.
 static func _unlike(data):
+	for name in data.parameters:
+		var one = data.parameters[name]
+		one.field = "" if one.field == null else one.field
+		one.about = "" if one.about == null else one.about
+		one.choices = [] if one.choices == null else one.choices
+		one.beside = [] if one.beside == null else one.beside
+		one.replaces = [] if one.replaces == null else one.replaces
+		one.initial = one.get("initial")
+		one.least = 0.0 if one.least == null else float(one.least)
+		one.most = 1.0 if one.most == null else float(one.most)
+		if not PARAMETER_TYPES.has(one.type):
+			return "$.parameters.%s.type: should be one of %s" % [name, Util.joined(PARAMETER_TYPES, ", ")]
+		if one.type == "boolean" and one.choices.size() != 2:
+			return "$.parameters.%s: should have two choices" % name
 	var joints = {}
 	for joint in data.joints:
 		if joint.parent != null and not joints.has(joint.parent):

@@ -4,10 +4,12 @@ const Util = preload("util.gd")
 const Asks = preload("asks.gd")
 const Words = preload("words.gd")
 const Repeating = preload("repeating.gd")
+const Parameters = preload("parameters.gd")
 
 
 # Returns {project, words: what `do` may be, modes, joints [{name, parent, part}], layers {layer: {start, stances [{id, name}], actions but
-# loops of stances, tags {tag: number of actions}}}, lines [{id, text}], points {name: [x, y, z] metres}}.
+# loops of stances, tags {tag: number of actions}}}, lines [{id, text}], points {name: [x, y, z] metres},
+# and, where there are any, parameters {name: {type, about, initial, least, most, choices}}}.
 static func describe(graph):
 	var words = []
 	for word in Asks.FIELDS:
@@ -25,10 +27,13 @@ static func describe(graph):
 	ids.sort()
 	for id in ids:
 		lines.append({id = id, text = graph.lines[id].get("text", "")})
-	return {
+	var out = {
 		project = graph.name, words = words, modes = Words.MODES.duplicate(), joints = joints, layers = layers, lines = lines,
 		points = graph.spots
 	}
+	if graph.parameters.size() > 0:
+		out.parameters = Parameters.describe(graph.parameters)
+	return out
 
 
 static func _layer(of):

@@ -45,6 +45,7 @@ var name = ""  # of the project
 var points = {}  # name -> Vector3
 var spots = {}  # name -> [x, y, z], as the export has them
 var lines = {}
+var parameters = {}  # what games set, by name, see parameters.gd
 var voices = {}  # line -> voice, see voice.gd
 var said = {}  # voices made from letters, by text and length
 var still_frame = {turns = [], shifts = {}}  # the base pose, as a clip's frame
@@ -81,6 +82,7 @@ func _read(json, bytes):
 	life = Life.life_of(data.life)
 	name = str(data.get("name", ""))
 	lines = data.lines
+	parameters = data.parameters
 	spots = data.points
 	for point in data.points:
 		points[point] = Util.vector(data.points[point])

@@ -92,6 +92,15 @@ func describe():
 	return character.describe() if character != null else {}
 
 
+# Sets a parameter of the project; returns the id of the request that this makes.
+func set_parameter(parameter, value = null):
+	return character.set_parameter(parameter, value) if character != null else ""
+
+
+func get_parameter(parameter):
+	return character.get_parameter(parameter) if character != null else null
+
+
 func gesture(tags = [], more = {}):
 	return _ask("gesture", "tags", tags, more)
 
