@@ -217,6 +217,55 @@ FString UMetagraphComponent::Interrupt()
 	return Begin() ? MetagraphText::Unreal(Character->Talk.interrupt()) : FString();
 }
 
+FString UMetagraphComponent::SetNumber(const FString& Parameter, float Value)
+{
+	return Begin() ? MetagraphText::Unreal(Character->Character.set_parameter(MetagraphText::Plain(Parameter), static_cast<double>(Value)))
+				   : FString();
+}
+
+FString UMetagraphComponent::SetFlag(const FString& Parameter, bool bValue)
+{
+	return Begin() ? MetagraphText::Unreal(Character->Character.set_parameter(MetagraphText::Plain(Parameter), bValue)) : FString();
+}
+
+FString UMetagraphComponent::SetText(const FString& Parameter, const FString& Value)
+{
+	return Begin() ? MetagraphText::Unreal(
+			   Character->Character.set_parameter(MetagraphText::Plain(Parameter), metagraph::Json(MetagraphText::Plain(Value))))
+				   : FString();
+}
+
+FString UMetagraphComponent::SetTexts(const FString& Parameter, const TArray<FString>& Values)
+{
+	metagraph::List<std::string> Words;
+	for (const FString& Value : Values)
+	{
+		Words.push_back(MetagraphText::Plain(Value));
+	}
+	return Begin() ? MetagraphText::Unreal(
+			   Character->Character.set_parameter(MetagraphText::Plain(Parameter), metagraph::Json::texts(Words)))
+				   : FString();
+}
+
+FString UMetagraphComponent::SetPlace(const FString& Parameter, FVector Value)
+{
+	const FVector Own = OwnSpace(Value);
+	const metagraph::Json Point = metagraph::Json::list({Own.X, Own.Y, Own.Z});
+	return Begin() ? MetagraphText::Unreal(Character->Character.set_parameter(MetagraphText::Plain(Parameter), Point)) : FString();
+}
+
+FString UMetagraphComponent::Trigger(const FString& Parameter)
+{
+	return Begin() ? MetagraphText::Unreal(Character->Character.set_parameter(MetagraphText::Plain(Parameter))) : FString();
+}
+
+FString UMetagraphComponent::Parameter(const FString& Name) const
+{
+	return Character.IsValid()
+		? MetagraphText::Unreal(metagraph::json::text(Character->Character.get_parameter(MetagraphText::Plain(Name))))
+		: FString();
+}
+
 FVector UMetagraphComponent::OwnSpace(FVector Place) const
 {
 	return MetagraphSpace::FromUnreal(Mesh ? Mesh->GetComponentTransform().InverseTransformPosition(Place) : Place);

@@ -156,6 +156,34 @@ public:
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
 	FString Interrupt();
 
+	/** Set a parameter that the project declares, a number. Returns the id of the request that this makes. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetNumber(const FString& Parameter, float Value);
+
+	/** Set a parameter that is true or false. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetFlag(const FString& Parameter, bool bValue);
+
+	/** Set a parameter to a text, or to one of its words. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetText(const FString& Parameter, const FString& Value);
+
+	/** Set a parameter to a list of texts. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetTexts(const FString& Parameter, const TArray<FString>& Values);
+
+	/** Set a parameter to a place in the world. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetPlace(const FString& Parameter, FVector Value);
+
+	/** Pull a parameter that is a trigger. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Trigger(const FString& Parameter);
+
+	/** The value of a parameter, as JSON: what it was set to, else its first one. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Parameter(const FString& Name) const;
+
 	/** Take a request back; all of them where no id is given. */
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
 	FString Withdraw(const FString& Request);
