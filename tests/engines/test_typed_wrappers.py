@@ -685,7 +685,15 @@ def test_a_reorganised_graph_changes_nothing_and_a_rename_does(project: Project,
     assert make_wrapper(rename_parameter(project, "energy", "vigour"), "stick", language) != before
 
 
-@pytest.mark.parametrize(("name", "called"), [("talk", "TalkCharacter"), ("my character", "MyCharacter")])
+@pytest.mark.parametrize(
+    ("name", "called"),
+    [
+        ("talk", "TalkCharacter"),
+        ("my character", "MyCharacter"),
+        ("Character", "ExportedCharacter"),
+        ("metagraph", "ExportedCharacter"),
+    ],
+)
 def test_the_class_is_called_after_the_project(project: Project, name: str, called: str) -> None:
     assert make_class_name(replace(project, name=name)) == called
     assert make_class_name(replace(project, name="話す")) == "ExportedCharacter"
