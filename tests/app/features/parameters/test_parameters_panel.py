@@ -186,3 +186,16 @@ def test_what_was_tried_is_over_once_something_else_is_on_stage(toys, panel):
     panel.session.onstage.improvise("listening")
     assert directed(panel) == []
     panel.session.onstage.improvise("talking")
+
+
+def test_one_action_is_found_under_its_stance(toys, panel):
+    panel.add_menu.aboutToShow.emit()
+    (menu,) = (a.menu() for a in panel.add_menu.actions() if a.text() == "One action")
+    inside = next(a.menu() for a in menu.actions() if a.text().startswith("arms: "))
+    assert inside.isEmpty()
+    inside.aboutToShow.emit()
+    entry = inside.actions()[0]
+    entry.trigger()
+    ((name, parameter),) = panel.document.project.parameters.items()
+    action = panel.document.project.action(parameter.request.action)
+    assert action.name == entry.text() and action.layer == "arms" and name in panel.controls
