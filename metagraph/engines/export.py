@@ -28,7 +28,7 @@ from metagraph.graph.face.expression_presets import make_presets
 from metagraph.graph.model import (
     Project,
 )
-from metagraph.motion.character_mesh import CharacterMesh, bind_character
+from metagraph.motion.character_mesh import CharacterMesh, bind_character, is_bound_to
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import make_names_unique
 from metagraph.speech.sound import guess_sound_ending
@@ -295,7 +295,7 @@ def place_mesh_on(
             notes.append(f"{other}bound by the names of its joints, {there} of {count}{more}")
         else:
             notes.append(f"{other}fitted to theirs, joint by joint")
-        body = bind_character(placed, skeleton)
+        body = placed if is_bound_to(placed, skeleton) else bind_character(placed, skeleton)
     shown = body.without(project.hidden)
     return shown if len(shown.triangles) else None, notes
 

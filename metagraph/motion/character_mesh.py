@@ -188,6 +188,14 @@ def bind_character(body: CharacterMesh, skeleton: Skeleton) -> CharacterMesh:
     )
 
 
+def is_bound_to(body: CharacterMesh, skeleton: Skeleton) -> bool:
+    """Return whether a character's joints are a skeleton's, at rest in whatever pose."""
+    own = body.skeleton
+    return own is skeleton or (
+        own.names == skeleton.names and bool(np.array_equal(own.parents, skeleton.parents))
+    )
+
+
 def _merged(joints: Array, weights: Array) -> tuple[Array, Array]:
     """Return joints and weights `[V, 4]` in which no joint holds a vertex twice; joint 0 where the weight is
     0.

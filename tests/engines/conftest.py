@@ -81,6 +81,12 @@ def core(csharp_core: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return Path(shutil.copy(csharp_core, tmp_path_factory.mktemp("unity")))
 
 
+@pytest.fixture(scope="module")
+def unity(core: Path) -> csharp_runtime.UnityStandIn:
+    """The Unity package, compiled against stand-ins for Unity's types."""
+    return csharp_runtime.compile_package(core)
+
+
 @pytest.fixture(scope="session")
 def rare(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with an export and vectors of what few exports need."""
@@ -91,6 +97,6 @@ def rare(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def game(tmp_path: Path) -> Path:
     """A Godot project with the addon."""
     folder = tmp_path / "game"
-    shutil.copytree(godot_runtime.ADDON, folder / "addons")
+    godot_runtime.install_addon(folder)
     (folder / "project.godot").write_text('config_version=4\n\n[application]\n\nconfig/name="test"\n')
     return folder

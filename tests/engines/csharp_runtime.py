@@ -6,6 +6,7 @@ import base64
 import os
 import shutil
 import subprocess
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,8 @@ RUNTIME = ROOT / "metagraph" / "engines" / "runtimes" / "unity"
 VECTORS = sorted(p.parent for p in (ROOT / "metagraph" / "engines" / "conformance").glob("*/vectors.json"))
 STICK = ROOT / "metagraph" / "engines" / "conformance" / "stick"
 CORE = sorted((RUNTIME / "Runtime" / "Core").rglob("*.cs"))
+
+STAND_IN = Path(__file__).with_name("unity_stand_in")
 
 needs_mono = pytest.mark.skipif(
     shutil.which("mcs") is None or shutil.which("mono") is None,
@@ -45,6 +48,32 @@ def compiled(out: Path, *sources: Path, references: tuple[Path, ...] = ()) -> Pa
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return out
+
+
+@dataclass(frozen=True)
+class UnityStandIn:
+    """The package, compiled against stand-ins for Unity's types. folder: where programs lie beside it."""
+
+    folder: Path
+
+    @property
+    def all(self) -> tuple[Path, ...]:
+        return tuple(self.folder / f"{name}.dll" for name in ("metagraph", "UnityEngine", "component"))
+
+    @property
+    def editor(self) -> Path:
+        return self.folder / "editor.dll"
+
+
+def compile_package(core: Path) -> UnityStandIn:
+    """Compile component and editor scripts beside the core."""
+    made = UnityStandIn(core.parent)
+    types = compiled(core.with_name("UnityEngine.dll"), STAND_IN / "UnityEngine.cs")
+    scripts = [sorted((RUNTIME / part).rglob("*.cs")) for part in ("Runtime/Component", "Editor")]
+    component = compiled(core.with_name("component.dll"), *scripts[0], references=(core, types))
+    known = (core, types, component)
+    compiled(made.editor, STAND_IN / "UnityEditor.cs", *scripts[1], references=known)
+    return made
 
 
 def mono(program: Path, *arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:

@@ -27,6 +27,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from metagraph import engines
+from tests.engines.godot_runtime import GODOT3
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
 VECTORS = Path(engines.__file__).with_name("conformance")
@@ -73,7 +74,7 @@ LANGUAGES = {
         "godot/addons/metagraph",
         ".gd",
         (
-            "godot3/", "metagraph_character", "plugin.gd", "conformance.gd", "character.gd", "check.gd",
+            "metagraph_character", "plugin.gd", "conformance.gd", "character.gd", "check.gd",
             "describe.gd", "glb.gd", "graph.gd", "shim", "util.gd", "bones.gd", "clip.gd",
         ),
         comments=r"#[^\n]*",
@@ -236,6 +237,8 @@ class CommandRunner:
                 'config_version=4\n\n[application]\n\nconfig/name="test"\n'
             )
         shutil.copytree(source, self.runtime)
+        if language == "gdscript":
+            shutil.copytree(GODOT3, self.folder / "addons", dirs_exist_ok=True)
 
     def notices(self, edit: Edit | None) -> str:
         """Return how vectors notice a change: "" if they do not."""

@@ -14,12 +14,19 @@ import pytest
 from metagraph import engines
 
 ADDON = Path(engines.__file__).with_name("runtimes") / "godot" / "addons"
+GODOT3 = ADDON.with_name("godot3") / "addons"  # what Godot 3 wants laid over it
 FOLDERS = sorted(path for path in Path(engines.__file__).with_name("conformance").iterdir() if path.is_dir())
 STICK = next(folder for folder in FOLDERS if folder.name == "stick")
 GODOT = shutil.which("godot3-server")
 needs_godot = pytest.mark.skipif(
     GODOT is None, reason="godot3-server is not here (apt install godot3-server)"
 )
+
+
+def install_addon(game: Path) -> None:
+    """Put the add-on for Godot 3 into a project."""
+    shutil.copytree(ADDON, game / "addons")
+    shutil.copytree(GODOT3, game / "addons", dirs_exist_ok=True)
 
 
 def godot(game: Path, script: str, *words: object, fails: bool = False) -> tuple[int, str]:

@@ -18,6 +18,7 @@ import pytest
 from metagraph import Character, engines
 from metagraph.engines.script_sounds import list_streams
 from metagraph.motion import rotation
+from tests.engines.godot_runtime import install_addon
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
 CONFORMANCE = Path(engines.__file__).with_name("conformance")
@@ -371,7 +372,7 @@ func _init():
 
 
 def in_godot(export: Path, steps: list[dict[str, Any]], folder: Path) -> dict[str, Any]:
-    shutil.copytree(RUNTIMES / "godot" / "addons", folder / "addons")
+    install_addon(folder)
     (folder / "project.godot").write_text('config_version=4\n\n[application]\n\nconfig/name="game"\n')
     (folder / "game.gd").write_text(GODOT)
     options = {"seed": SEED, "ahead": AHEAD, "recent": RECENT}

@@ -251,7 +251,7 @@ def test_the_node_moves_a_skeletons_bones(game: Path) -> None:
 
 
 NODE = """extends SceneTree
-const Node3 = preload("res://addons/metagraph/godot3/metagraph_character.gd")
+const Node3 = preload("res://addons/metagraph/metagraph_character.gd")
 var avatar
 var broken
 var skeleton

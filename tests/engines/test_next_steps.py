@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.next_steps import README, STEPS, list_steps, make_readme
+from metagraph.engines.targets.target import Contents
+from metagraph.formats.store import open_project
 
 
 def test_every_target_says_what_to_do_next():
@@ -47,4 +50,17 @@ def test_an_export_has_a_readme_with_its_files_its_steps_and_what_it_loses(toy, 
 
 def test_many_files_of_one_kind_are_counted():
     text = make_readme("vrma", "VRM animations", "files", "a", [f"{n}.vrma" for n in range(20)], ())
-    assert "20 files `*.vrma`" in text and "Nothing." in text
+    assert "| `*.vrma` | an animation for each action; 20 files |" in text and "Nothing." in text
+
+
+def test_the_readme_of_every_export_says_what_each_of_its_files_is(few, tmp_path):
+    """Where there is a figure to export; the guides that targets write themselves say it in their own words."""
+    project = open_project(few).project
+    mesh = Path(__file__).parents[2] / "sample_clips" / "mannequin.glb"
+    for target, steps in STEPS.items():
+        if not steps.guide:
+            registry.write_for_target(project, target, tmp_path / target, Contents(mesh))
+            text = (tmp_path / target / README).read_text(encoding="utf-8")
+            rows = re.findall(r"^\| `(.*)` \| (.*) \|$", text, re.MULTILINE)
+            assert rows and all(words for _, words in rows), (target, rows)
+            assert len(rows) < 16, target

@@ -99,6 +99,17 @@ def test_the_component_sets_parameters(cpp_probe: Path, tmp_path: Path) -> None:
 
 
 @needs_compiler
+def test_a_mesh_without_a_blueprint_shows_the_pose_and_morph_targets_are_curves(cpp_probe: Path) -> None:
+    export = STICK.with_name("varied") / "varied.json"
+    done = played(cpp_probe, "drive", export)
+    assert done.returncode == 0, done.stdout + done.stderr
+    given, shown, face = done.stdout.splitlines()
+    assert given == "class 1 1"
+    assert shown == "shown 100 same curves"
+    assert face.startswith("face alone ") and int(face.split()[-1]) > 0
+
+
+@needs_compiler
 def test_the_factory_leaves_other_json_alone_and_says_what_is_wrong(cpp_probe: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.json"
     other.write_text("{}")

@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph import engines
 from metagraph.engines.engine_machine import Machine, list_machines
 from metagraph.engines.export import make_export_stem
 from metagraph.engines.targets import godot_tree
@@ -35,10 +34,10 @@ from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.planner import make_plan
+from tests.engines.godot_runtime import install_addon
 from tests.posing import pose_at
 
 HERE = Path(__file__).parent
-ADDON = Path(engines.__file__).with_name("runtimes") / "godot" / "addons"
 MANNEQUIN = HERE.parents[1] / "sample_clips" / "mannequin.glb"
 GODOT = shutil.which("godot3-server")
 needs_godot = pytest.mark.skipif(
@@ -52,7 +51,7 @@ def folder(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     borrows.
     """
     place = tmp_path_factory.mktemp("game")
-    shutil.copytree(ADDON, place / "addons")
+    install_addon(place)
     (place / "project.godot").write_text('config_version=4\n\n[application]\n\nconfig/name="test"\n')
     shutil.copy(HERE / "run" / "godot_tree.gd", place)
     made = TARGETS[0].write(ExportOrder(sample, place, make_export_stem(sample), Contents(MANNEQUIN)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import struct
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,8 @@ from metagraph.graph.edits import add_clips, add_stance
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from tests.engines.test_export import gltf, khronos
+from tests.engines.test_npm_package import PACKAGES, needs
+from tests.engines.test_npm_package import node as run_node
 
 SAMPLES = Path(__file__).parents[2] / "sample_clips"
 
@@ -119,3 +122,99 @@ def test_what_is_no_avatar_is_refused(project: Project, tmp_path: Path) -> None:
     lame = replace(project, roles={"left_foot": ""})
     with pytest.raises(ExportError, match="left_foot"):
         registry.write_for_target(lame, "vrm", tmp_path, Contents(SAMPLES / "ada.glb"))
+
+
+def add_springs(path: Path, folder: Path) -> Path:
+    """Return a copy of a VRM file that has spring bones: a little finger's, and one of nodes that are no joints."""
+    document = gltf(path)
+    names = [node.get("name") for node in document["nodes"]]
+    finger = [names.index(f"LeftLittle{n}") for n in (1, 2, 3)]
+    mesh = next(n for n, node in enumerate(document["nodes"]) if "mesh" in node)
+    sphere = {"shape": {"sphere": {"offset": [0.0, 0.1, 0.0], "radius": 0.1}}}
+    document["extensionsUsed"].append("VRMC_springBone")
+    document["extensions"]["VRMC_springBone"] = {
+        "specVersion": "1.0",
+        "colliders": [
+            {"node": mesh, **sphere},
+            {"node": names.index("Head"), "extensions": {"x": {}}, **sphere},
+        ],
+        "colliderGroups": [{"name": "none", "colliders": [0]}, {"name": "head", "colliders": [0, 1]}],
+        "springs": [
+            {"name": "gone", "joints": [{"node": mesh}, {"node": finger[0]}]},
+            {
+                "name": "finger",
+                "joints": [
+                    {"node": n, "hitRadius": 0.02, "stiffness": 1.5, "dragForce": 0.3} for n in finger
+                ],
+                "colliderGroups": [0, 1],
+                "center": names.index("Hips"),
+            },
+        ],
+    }
+    return with_document(path, document, folder / "sprung.vrm")
+
+
+def with_document(path: Path, document: dict[str, Any], to: Path) -> Path:
+    """Return a copy of a GLB with other JSON."""
+    data = path.read_bytes()
+    size = int.from_bytes(data[12:16], "little")
+    words = json.dumps(document).encode()
+    words += b" " * (-len(words) % 4)
+    rest = data[20 + size :]
+    head = b"glTF" + struct.pack("<III", 2, 20 + len(words) + len(rest), len(words)) + b"JSON"
+    to.write_bytes(head + words + rest)
+    return to
+
+
+def test_spring_bones_of_the_source_are_kept(project: Project, written: Path, tmp_path: Path) -> None:
+    source = add_springs(written, tmp_path)
+    report = registry.write_for_target(project, "vrm", tmp_path / "out", Contents(source, base=tmp_path))
+    document = gltf(report.files[0])
+    names = [node["name"] for node in document["nodes"]]
+    springs = document["extensions"]["VRMC_springBone"]
+    assert "VRMC_springBone" in document["extensionsUsed"]
+    (finger,) = springs["springs"]
+    assert [names[j["node"]] for j in finger["joints"]] == ["LeftLittle1", "LeftLittle2", "LeftLittle3"]
+    assert finger["joints"][0]["stiffness"] == 1.5 and names[finger["center"]] == "Hips"
+    (collider,), (group,) = springs["colliders"], springs["colliderGroups"]
+    assert names[collider["node"]] == "Head" and "extensions" not in collider
+    assert group == {"name": "head", "colliders": [0]} and finger["colliderGroups"] == [0]
+    assert any("2 joints of the spring bones" in warning for warning in report.warnings)
+
+
+READ = """
+import { readFileSync } from "node:fs";
+import { VRMLoaderPlugin } from "@pixiv/three-vrm";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+
+globalThis.self ??= globalThis;
+const loader = new GLTFLoader();
+loader.register((parser) => new VRMLoaderPlugin(parser));
+const bytes = readFileSync(process.argv[2]);
+const { vrm } = (await loader.parseAsync(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length), "")).userData;
+const joints = [...vrm.springBoneManager.joints];
+const tip = joints[joints.length - 1].bone;
+vrm.update(0);
+const before = tip.quaternion.clone();
+vrm.humanoid.autoUpdateHumanBones = false;
+vrm.scene.getObjectByName("LeftUpperArm").rotation.x += 1;
+for (let n = 0; n < 3; n++) vrm.update(1 / 60);
+console.log(JSON.stringify({ joints: joints.map((j) => j.bone.name), moved: before.angleTo(tip.quaternion) > 0.01 }));
+"""
+
+
+@needs("@pixiv/three-vrm", "three")
+def test_three_vrm_moves_the_spring_bones(project: Project, written: Path, tmp_path: Path) -> None:
+    bald = gltf(written)
+    for field in ("images", "textures", "samplers"):  # Node decodes no pictures
+        bald.pop(field, None)
+    bald["materials"] = [{"name": m.get("name", "")} for m in bald["materials"]]
+    source = add_springs(with_document(written, bald, tmp_path / "bald.vrm"), tmp_path)
+    report = registry.write_for_target(project, "vrm", tmp_path / "out", Contents(source, base=tmp_path))
+    (tmp_path / "node_modules").symlink_to(PACKAGES)
+    (tmp_path / "read.mjs").write_text(READ)
+    said = run_node(
+        "--preserve-symlinks", "--preserve-symlinks-main", "read.mjs", report.files[0], cwd=tmp_path
+    )
+    found = json.loads(said.splitlines()[-1])
+    assert found == {"joints": ["LeftLittle1", "LeftLittle2"], "moved": True}

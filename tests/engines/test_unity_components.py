@@ -14,91 +14,10 @@ import yaml
 
 from metagraph import __version__
 from metagraph.engines.targets import registry
-from tests.engines.csharp_runtime import CORE, RUNTIME, STICK, compiled, mono, needs_mono
+from tests.engines.csharp_runtime import CORE, RUNTIME, STICK, UnityStandIn, compiled, mono, needs_mono
 
 pytestmark = needs_mono
 
-
-ENGINE = r"""
-using System;
-using System.Collections.Generic;
-
-namespace UnityEngine
-{
-    public struct Vector3 { public float x, y, z; public Vector3(float x, float y, float z) { this.x = x; this.y = y; this.z = z; } }
-    public struct Quaternion
-    {
-        public float x, y, z, w;
-        public Quaternion(float x, float y, float z, float w) { this.x = x; this.y = y; this.z = z; this.w = w; }
-    }
-    public class Object
-    {
-        public string name = "";
-        public static bool operator ==(Object a, Object b) { return ReferenceEquals(a, b); }
-        public static bool operator !=(Object a, Object b) { return !ReferenceEquals(a, b); }
-        public override bool Equals(object other) { return ReferenceEquals(this, other); }
-        public override int GetHashCode() { return 0; }
-    }
-    public class TextAsset : Object { public string text = ""; public byte[] bytes = new byte[0]; }
-    public class Mesh : Object
-    {
-        public List<string> shapes = new List<string>();
-        public int GetBlendShapeIndex(string name) { return shapes.IndexOf(name); }
-        public int GetBlendShapeFrameCount(int shape) { return 1; }
-        public float GetBlendShapeFrameWeight(int shape, int frame) { return 100f; }
-    }
-    public class GameObject : Object { }
-    public sealed class RequireComponent : Attribute { public RequireComponent(Type type) { } }
-    public class Component : Object
-    {
-        public GameObject gameObject;
-        public T GetComponent<T>() { return (T)(object)all.Find(c => c is T); }
-        public static List<Component> all = new List<Component>();
-        public Transform transform;
-        public T[] GetComponentsInChildren<T>(bool inactive) { return all.FindAll(c => c is T).ConvertAll(c => (T)(object)c).ToArray(); }
-    }
-    public class Transform : Component
-    {
-        public Quaternion localRotation;
-        public Vector3 localPosition;
-        public Vector3 InverseTransformPoint(Vector3 world) { return world; }
-    }
-    public class SkinnedMeshRenderer : Component
-    {
-        public Mesh sharedMesh;
-        public Dictionary<int, float> weights = new Dictionary<int, float>();
-        public void SetBlendShapeWeight(int index, float value) { weights[index] = value; }
-    }
-    public class Behaviour : Component { public bool enabled = true; }
-    public class MonoBehaviour : Behaviour { }
-    public static class Time { public static float deltaTime; }
-    public static class Application { public static string streamingAssetsPath = ""; }
-    public static class Debug
-    {
-        public static void Log(object message) { Console.WriteLine(message); }
-        public static void LogWarning(object message, Object context) { Console.WriteLine("warning: " + message); }
-        public static void LogError(object message, Object context) { Console.WriteLine("error: " + message); }
-    }
-    public sealed class TooltipAttribute : Attribute { public TooltipAttribute(string text) { } }
-    public enum RuntimeInitializeLoadType { SubsystemRegistration }
-    public sealed class RuntimeInitializeOnLoadMethodAttribute : Attribute
-    {
-        public RuntimeInitializeOnLoadMethodAttribute(RuntimeInitializeLoadType when) { }
-    }
-    public sealed class DisallowMultipleComponent : Attribute { }
-    public sealed class AddComponentMenu : Attribute { public AddComponentMenu(string name) { } }
-}
-
-namespace UnityEngine.Events
-{
-    public abstract class UnityEvent<A, B, C>
-    {
-        private Action<A, B, C> listeners = (a, b, c) => { };
-        public void AddListener(Action<A, B, C> listener) { listeners += listener; }
-        public void Invoke(A a, B b, C c) { listeners(a, b, c); }
-    }
-}
-"""
 
 SCENE = r"""
 using System;
@@ -127,7 +46,7 @@ public static class Scene
         Component.all.Add(new SkinnedMeshRenderer { sharedMesh = new Mesh() });
         actor.begin.AddListener((layer, action, meta) => Console.WriteLine("begin " + layer + " " + meta));
         Call(actor, "Awake");
-        Call(actor, "LateUpdate");
+        Frame(actor);
         string id = actor.Gesture("no such tag");
         string[] asked =
         {
@@ -137,7 +56,7 @@ public static class Scene
         for (int frame = 0; frame < 150; frame++)
         {
             Time.deltaTime = 0.02f;
-            Call(actor, "LateUpdate");
+            Frame(actor);
         }
         Answer unknown = actor.AnswerTo(id);
         Console.WriteLine("pieces " + actor.SayPiece("Hello").Count + " " + string.Join(" ", actor.SayPiece(" there! No", true).ToArray()));
@@ -147,7 +66,7 @@ public static class Scene
         };
         for (int frame = 0; frame < 10; frame++)
         {
-            Call(actor, "LateUpdate");
+            Frame(actor);
         }
         Console.WriteLine("typed " + string.Join(" ", typed.Select(one => one == null ? "nothing" : actor.AnswerTo(one).State).ToArray()));
         actor.gestures = false;
@@ -180,6 +99,12 @@ public static class Scene
         Console.WriteLine(far < 1e-5 ? "mirrored" : "apart by " + far.ToString(CultureInfo.InvariantCulture));
     }
 
+    private static void Frame(object actor)
+    {
+        Call(actor, "Update");
+        Call(actor, "LateUpdate");
+    }
+
     private static void Call(object actor, string method)
     {
         actor.GetType().GetMethod(method, BindingFlags.Instance | BindingFlags.NonPublic).Invoke(actor, null);
@@ -189,18 +114,11 @@ public static class Scene
 
 
 @pytest.fixture(scope="module")
-def scene(core: Path) -> Path:
-    """The component, compiled against Unity's names, and a program that does to it what the engine would."""
-    engine, program = core.with_name("engine.cs"), core.with_name("scene.cs")
-    engine.write_text(ENGINE)
+def scene(unity: UnityStandIn) -> Path:
+    """A program that does to the component what the engine would."""
+    program = unity.folder / "scene.cs"
     program.write_text(SCENE)
-    types = compiled(core.with_name("UnityEngine.dll"), engine)
-    component = compiled(
-        core.with_name("component.dll"),
-        RUNTIME / "Runtime" / "Component" / "MetagraphCharacter.cs",
-        references=(core, types),
-    )
-    return compiled(core.with_name("scene.exe"), program, references=(core, types, component))
+    return compiled(unity.folder / "scene.exe", program, references=unity.all)
 
 
 @pytest.mark.nightly
@@ -310,29 +228,6 @@ def test_what_the_readme_shows_compiles(scene: Path) -> None:
     compiled(scene.with_name("readme.exe"), source, references=references)
 
 
-EDITOR = r"""
-using System;
-using UnityEngine;
-
-namespace UnityEditor
-{
-    public sealed class InitializeOnLoadAttribute : Attribute { }
-    public static class ObjectFactory
-    {
-        public static event Action<Component> componentWasAdded;
-        public static void Add(Component one) { componentWasAdded(one); }
-    }
-    public static class PrefabUtility
-    {
-        public static string GetPrefabAssetPathOfNearestInstanceRoot(UnityEngine.Object one) { return one.name; }
-    }
-    public static class AssetDatabase
-    {
-        public static T LoadAssetAtPath<T>(string path) where T : UnityEngine.Object, new() { return new T { name = path }; }
-    }
-}
-"""
-
 ADDING = r"""
 using System;
 using System.Runtime.CompilerServices;
@@ -344,35 +239,30 @@ public static class Adding
     public static void Main()
     {
         RuntimeHelpers.RunClassConstructor(typeof(ExportFinder).TypeHandle);
+        UnityEditor.AssetDatabase.known["Assets/people/ada.metagraph"] = new MetagraphExport { name = "ada" };
         var found = new MetagraphCharacter { gameObject = new GameObject { name = "Assets/people/ada.glb" } };
         UnityEditor.ObjectFactory.Add(found);
         UnityEditor.ObjectFactory.Add(new Transform());
-        Console.WriteLine(found.export.name + " " + found.glb.name);
+        Console.WriteLine(found.asset.name + " " + (found.export == null));
         var alone = new MetagraphCharacter { gameObject = new GameObject { name = "" } };
         UnityEditor.ObjectFactory.Add(alone);
         var given = new MetagraphCharacter { gameObject = found.gameObject, export = new TextAsset { name = "mine" } };
         UnityEditor.ObjectFactory.Add(given);
-        Console.WriteLine((alone.export == null) + " " + given.export.name + " " + (given.glb == null));
+        Console.WriteLine((alone.asset == null) + " " + given.export.name + " " + (given.asset == null));
     }
 }
 """
 
 
-def test_a_component_that_is_added_finds_its_export(scene: Path) -> None:
-    """The files beside the model; what is given already stays."""
-    editor, source = scene.with_name("editor.cs"), scene.with_name("adding.cs")
-    editor.write_text(EDITOR)
+def test_a_component_that_is_added_finds_its_export(unity: UnityStandIn) -> None:
+    """The file beside the model; what is given already stays."""
+    source = unity.folder / "adding.cs"
     source.write_text(ADDING)
-    references = tuple(
-        scene.with_name(name) for name in ("metagraph.dll", "UnityEngine.dll", "component.dll")
-    )
-    types = compiled(scene.with_name("UnityEditor.dll"), editor, references=references)
-    finder = RUNTIME / "Editor" / "ExportFinder.cs"
-    program = compiled(scene.with_name("adding.exe"), source, finder, references=(*references, types))
+    program = compiled(unity.folder / "adding.exe", source, references=(*unity.all, unity.editor))
     done = mono(program)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.splitlines() == [
-        "Assets/people/ada.json Assets/people/ada.glb.bytes",
+        "ada True",
         "True mine True",
     ]
 
@@ -388,7 +278,7 @@ def test_the_packages_sample_compiles(scene: Path) -> None:
 def test_the_package_is_laid_out_as_unity_asks() -> None:
     """https://docs.unity3d.com/Manual/cus-layout.html: the folders, each with an assembly, and the pages."""
     package = json.loads((RUNTIME / "package.json").read_bytes())
-    assert package["unity"] == "2019.4" and package["version"] == __version__
+    assert package["unity"] == "2021.3" and package["version"] == __version__
     assert re.fullmatch(r"[a-z0-9]+(\.[a-z0-9-]+){2,}", package["name"])
     assert all((RUNTIME / sample["path"]).is_dir() for sample in package["samples"])
     for page in (

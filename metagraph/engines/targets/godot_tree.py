@@ -36,6 +36,7 @@ from typing import Literal
 
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.engines.engine_machine import Arrow, EngineState, Machine, list_machines, write_machine_glb
+from metagraph.engines.targets.godot_scene import find_first_gesture, write_import_settings, write_tree_scene
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
@@ -240,7 +241,7 @@ def _places(machine: Machine) -> Iterator[tuple[EngineState, Place]]:
 
 
 def write(order: ExportOrder) -> ExportedFiles:
-    """Write both trees, the GLB and a guide."""
+    """Write both trees, the GLB, a scene that plays in Godot 4, and a guide."""
     project, stem = order.project, order.stem
     built = list_machines(project, spell_for_godot)
     glb = order.folder / f"{stem}.glb"
@@ -255,15 +256,22 @@ def write(order: ExportOrder) -> ExportedFiles:
     }
     for name, text in texts.items():
         write_atomically(order.folder / name, text.encode())
+    made = [
+        *(order.folder / name for name in texts),
+        glb,
+        write_import_settings(order.folder, glb.name, True),
+    ]
+    made += write_tree_scene(project, order.folder, stem, stem, built)
     order.tell(2, 2, "done")
-    return ExportedFiles((*(order.folder / name for name in texts), glb), notes)
+    return ExportedFiles(tuple(made), notes)
 
 
 def write_godot_guide(stem: str, built: tuple[Machine, ...]) -> str:
     """Return in Markdown how a scene plays the tree, and the states there are."""
     layers = ", ".join(f'"{m.layer}"' for m in built)
     loops = ", ".join(f'"{s.name}"' for m in built for s in m.states if s.loop)
-    parts = [GUIDE.format(stem=stem, layers=layers, loops=loops)]
+    layer, first = find_first_gesture(built)
+    parts = [GUIDE.format(stem=stem, layers=layers, loops=loops, layer=layer, state=first)]
     for machine in built:
         parts.append(f"\n### {machine.layer}\n\n| stance | loop |\n|---|---|\n")
         names = {ident: stance.name.replace("|", "\\|") for ident, stance in machine.graph.stances.items()}
@@ -282,36 +290,51 @@ def write_godot_guide(stem: str, built: tuple[Machine, ...]) -> str:
 
 GUIDE = """# {stem} in Godot
 
-`{stem}.tres` is the root of an AnimationTree for Godot 4, `{stem}.godot3.tres` the same for Godot 3; delete the one you do not need.
-`{stem}.glb` holds the character and an animation for each state.
+| File | What it is |
+|---|---|
+| `{stem}.tscn`, `{stem}.gd` | a scene for Godot 4.3 or later whose AnimationTree plays |
+| `{stem}.tres` | the root of the AnimationTree |
+| `{stem}.glb` | the character, and an animation for each state |
+| `{stem}.godot3.tres` | the root for Godot 3; delete it in Godot 4 |
 
-Put the files into the project. Leave the GLB's import settings as they are: no retargeting and no bone map, since layers are added
-to the skeleton's rest, which is the base pose. Filters expect the skeleton at `Skeleton3D` below the scene's root (Godot 3:
-`Skeleton`), where the importer puts it. Instance the GLB in a scene, give it an AnimationTree as a child, and that this script:
+## Godot 4
 
-    extends AnimationTree
+1. Copy this folder into your Godot project.
+2. Open `{stem}.tscn` and press F6. The character makes a gesture.
+3. Request other states:
 
-    func _ready():
-        var player = get_node("../AnimationPlayer")
-        for loop in [{loops}]:
-            player.get_animation(loop).loop_mode = Animation.LOOP_LINEAR  # Godot 3: .loop = true
-        tree_root = load("res://{stem}.tres")  # Godot 3: {stem}.godot3.tres
-        anim_player = get_path_to(player)
-        for layer in [{layers}]:
-            set("parameters/add_" + layer + "/add_amount", 1.0)
-        active = true
+```gdscript
+$Tree.play("{layer}", "{state}")
+```
 
-    func play(layer, state):
-        get("parameters/" + layer + "/playback").travel(state)
+Keep the GLB's import settings. A bone map changes the rest pose, and with it the poses.
 
-From Godot 4.3 on the tree itself loops its loops; the first three lines are for older ones. Instead of the script, `tree_root`,
-`anim_player` and the amounts can be set in the inspector.
+## Godot 3
 
-## Asking
+Instance the GLB in a scene. Add an AnimationTree as its child, with this script:
 
-`play(layer, state)` goes by the transitions: to a stance by asking for its loop, to a gesture or fidget by its name. What is not of
-the stance the layer is in goes to that stance first. Gestures and fidgets come back to the loop by themselves. What plays is not
-begun anew; use `start(state)` instead of `travel(state)` for that, which does not blend.
+```gdscript
+extends AnimationTree
+
+func _ready():
+	var player = get_node("../AnimationPlayer")
+	for loop in [{loops}]:
+		player.get_animation(loop).loop = true
+	tree_root = load("res://{stem}.godot3.tres")
+	anim_player = get_path_to(player)
+	for layer in [{layers}]:
+		set("parameters/add_" + layer + "/add_amount", 1.0)
+	active = true
+
+func play(layer, state):
+	get("parameters/" + layer + "/playback").travel(state)
+```
+
+## Requests
+
+- To go to a stance, request its loop. The tree plays the transitions on the way.
+- To play a gesture or fidget, request its name. The layer goes to its stance first, and comes back to the loop at the end.
+- `travel(state)` does not restart the state that plays. `start(state)` does, without a blend.
 
 ## States
 """
@@ -350,8 +373,8 @@ TARGETS = (
         "godot-tree",
         "Godot AnimationTree (.tres)",
         phrase(
-            "an AnimationTree root for Godot 4 and one for Godot 3, a guide to their states, and "
-            "one GLB with an animation for each state"
+            "a scene and an AnimationTree root for Godot 4, a root for Godot 3, a guide to their "
+            "states, and one GLB with an animation for each state"
         ),
         write,
         (*MACHINE, WEIGHTS, CROSSFADE, *LOSSES),

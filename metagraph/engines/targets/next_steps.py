@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import PurePosixPath
 
 from metagraph import __version__
 from metagraph.common.wording import phrase
+from metagraph.engines.targets.file_words import describe_files
 
 README = "README.md"
-MORE = 8  # files of one ending that are listed by name; more are counted
 
 
 @dataclass(frozen=True)
@@ -89,7 +88,7 @@ STEPS: Mapping[str, NextSteps] = {
     ),
     "unity-controller": NextSteps(
         (
-            phrase("Drop this folder, its .meta files included, into the Assets of your Unity project."),
+            phrase("Open your Unity project, double-click '{stem}.unitypackage', and press Import."),
             phrase("'{stem}.unity.md' says how to set up the Animator, and lists the numbers for requests."),
         ),
         "engines/unity",
@@ -101,9 +100,9 @@ STEPS: Mapping[str, NextSteps] = {
                 "Copy 'Metagraph' into the Packages folder of your Unity project, and all else into Assets."
             ),
             phrase(
-                "Put '{stem}.glb' into the scene. Unity imports it with the package glTFast or UnityGLTF."
+                "Drag the imported '{stem}.metagraph' into the scene. It is the character, with its clips."
             ),
-            phrase("Add the component MetagraphCharacter to it. It finds its files. Press Play."),
+            phrase("Press Play. Make requests from a script."),
         ),
         "engines/unity",
         "csharp",
@@ -126,10 +125,12 @@ STEPS: Mapping[str, NextSteps] = {
         (
             phrase("Export into the folder of your .uproject, open the project and let it build the plugin."),
             phrase("Import '{stem}.json' as a Metagraph asset and '{stem}.glb' as a skeletal mesh."),
-            phrase("Give an actor the mesh and a Metagraph component, and set the component's asset."),
-            phrase("Put the node Metagraph before the output pose of the mesh's animation blueprint."),
+            phrase("Give an actor the mesh and a Metagraph component with the asset. Press Play."),
         ),
         "engines/unreal",
+        "cpp",
+        "UMetagraphComponent* Character = Actor->FindComponentByClass<UMetagraphComponent>();\n"
+        'Character->Gesture({TEXT("greeting")});\nCharacter->Say(TEXT("Hello! How are you?"));\n',
     ),
     "playcanvas": NextSteps(
         (
@@ -141,12 +142,13 @@ STEPS: Mapping[str, NextSteps] = {
     ),
     "godot-tree": NextSteps(
         (
-            phrase("Copy this folder into your Godot project, and put '{stem}.glb' into a scene."),
-            phrase(
-                "Give its AnimationTree the resource '{stem}.tres'. '{stem}.godot.md' describes its states."
-            ),
+            phrase("Copy this folder into your Godot project."),
+            phrase("Open '{stem}.tscn' and press F6: the character makes a gesture."),
+            phrase("Request other states in '{stem}.gd'. '{stem}.godot.md' lists all of them."),
         ),
         "engines/godot",
+        "gdscript",
+        '$Tree.play("arms", "THE_NAME_OF_A_STATE")\n',
     ),
     "interactivity": NextSteps(
         (
@@ -224,27 +226,12 @@ def make_readme(
     found = find_next_steps(target)
     lines = [f"# {stem}: {title}", "", f"Made by Metagraph {__version__}: {what}."]
     steps = [f"{n}. {step}" for n, step in enumerate(list_steps(target, stem), 1)]
-    lines += ["", "## Next", "", *steps] if steps else []
+    lines += ["", "## Steps", "", *steps] if steps else []
     if found.code:
         lines += ["", f"```{found.language}", found.code.replace("{stem}", stem).rstrip(), "```"]
-    lines += ["", f"The manual has more, on its page `{found.page}`.", "", "## Files", ""]
-    lines += [f"- {line}" for line in _list_files(files)]
-    lines += ["", "## What this format loses", ""]
+    lines += ["", f"The manual's page `{found.page}` has more.", "", "## Files", "", "| File | What it is |"]
+    lines += ["|---|---|"]
+    lines += [f"| `{name}` | {words} |" for name, words in describe_files(target, stem, files)]
+    lines += ["", "## What is lost", ""]
     lines += [f"- {loss}" for loss in losses] or ["Nothing."]
     return "\n".join(lines) + "\n"
-
-
-def _list_files(files: Iterable[str]) -> list[str]:
-    """Return files and folders in words, many of one kind counted."""
-    inside: dict[str, int] = {}
-    alone: dict[str, list[str]] = {}
-    for name in sorted(files):
-        path = PurePosixPath(name)
-        if len(path.parts) > 1:
-            inside[path.parts[0]] = inside.get(path.parts[0], 0) + 1
-        else:
-            alone.setdefault(path.suffix, []).append(name)
-    out: list[str] = []
-    for suffix, names in alone.items():
-        out += [f"`{name}`" for name in names] if len(names) <= MORE else [f"{len(names)} files `*{suffix}`"]
-    return [*out, *(f"`{folder}/`, {count} files" for folder, count in inside.items())]

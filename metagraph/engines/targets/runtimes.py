@@ -9,6 +9,7 @@ from pathlib import Path
 
 from metagraph import engines
 from metagraph.common.wording import phrase
+from metagraph.engines.engine_machine import list_machines
 from metagraph.engines.export import (
     AIFF,
     OGG_AND_MP3,
@@ -18,11 +19,20 @@ from metagraph.engines.export import (
     write_indented_export,
     write_project_files,
 )
-from metagraph.engines.targets.godot_scene import MOTION, write_godot_scene
+from metagraph.engines.targets.godot_library import write_animation_library
+from metagraph.engines.targets.godot_scene import (
+    MOTION,
+    write_godot_scene,
+    write_import_settings,
+    write_tree_scene,
+)
+from metagraph.engines.targets.godot_tree import spell_for_godot, write_animation_tree
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.engines.targets.typed_wrappers import write_wrapper
+from metagraph.engines.targets.unity_humanoid import write_humanoid
 from metagraph.engines.targets.unity_package import write_package_metas
 from metagraph.errors import FileError
+from metagraph.formats.atomic import write_atomically
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
 # Where READMEs find requests here; an export carries them along.
@@ -55,7 +65,7 @@ def copy_runtime(source: Path, target: Path, leave: tuple[str, ...] = ()) -> lis
     out = []
     for path in sorted(source.rglob("*")):
         inside = path.relative_to(source)
-        if path.is_dir() or any(p in leave or p == "__pycache__" or p.startswith(".") for p in inside.parts):
+        if path.is_dir() or any(p in leave or p == "__pycache__" or _is_hidden(p) for p in inside.parts):
             continue
         place = target / inside
         try:
@@ -81,6 +91,10 @@ def copy_runtime(source: Path, target: Path, leave: tuple[str, ...] = ()) -> lis
     return out
 
 
+def _is_hidden(name: str) -> bool:
+    return name.startswith(".") and name != ".gdignore"  # which keeps Godot out of a folder
+
+
 def _with(runtime: str, under: str) -> Callable[[ExportOrder], ExportedFiles]:
     def write(order: ExportOrder) -> ExportedFiles:
         made = write_with_sounds(order)
@@ -98,11 +112,22 @@ def _copy_glb(order: ExportOrder, ending: str) -> Path:
 
 
 def _godot(order: ExportOrder) -> ExportedFiles:
-    """Write the export, the add-on and a scene that plays."""
+    """Write the export, the add-on, a scene that plays, and the same clips as Godot's own resources."""
     made = write_with_sounds(order, WAV | OGG_AND_MP3)
-    files = [_copy_glb(order, MOTION), *write_godot_scene(order.project, order.folder, order.stem)]
+    project, folder, stem = order.project, order.folder, order.stem
+    files = [_copy_glb(order, MOTION), *write_godot_scene(project, folder, stem)]
+    files.append(write_import_settings(folder, f"{stem}.glb", False))
+    built = list_machines(project, spell_for_godot)
+    if built:
+        library, tree = folder / f"{stem}.library.tres", folder / f"{stem}.tree.tres"
+        write_atomically(library, write_animation_library(project, built).encode())
+        write_atomically(tree, write_animation_tree(project, built, 4).encode())
+        scene = write_tree_scene(project, folder, stem, f"{stem}.tree", built, library.name)
+        files += [library, tree, *scene]
+    for part in ("addons", "godot3"):
+        files += copy_runtime(RUNTIMES / "godot" / part, folder / part)
     files += write_wrapper(order, "gdscript")
-    return ExportedFiles((*made.files, *files, *copy_runtime(RUNTIMES / "godot", order.folder)), made.notes)
+    return ExportedFiles((*made.files, *files), made.notes)
 
 
 def _unity(order: ExportOrder) -> ExportedFiles:
@@ -111,21 +136,30 @@ def _unity(order: ExportOrder) -> ExportedFiles:
     package = order.folder / "Metagraph"
     files = copy_runtime(RUNTIMES / "unity", package)
     metas = write_package_metas(package, files)
-    files = [_copy_glb(order, ".glb.bytes"), *write_wrapper(order, "csharp"), *files]
-    return ExportedFiles((*made.files, *files, *metas), made.notes)
+    own = [_copy_glb(order, ".metagraph"), *write_wrapper(order, "csharp")]
+    bones = write_humanoid(order.project)
+    if bones is not None:
+        own.append(order.folder / f"{order.stem}.humanoid.json")
+        write_atomically(own[-1], bones)
+    return ExportedFiles((*made.files, *own, *files, *metas), made.notes)
 
 
 PLUGIN = "Plugins/Metagraph"  # where Unreal looks for a project's plugins
+CORE_IN_PLUGIN = "Source/Metagraph/Private/Core"
+
+
+def copy_core(folder: Path) -> list[Path]:
+    """Copy the C++ headers that Unreal's plugin includes; return them. Raises FileError."""
+    return copy_runtime(
+        RUNTIMES / "cpp", folder, ("README.md", "LICENSE", "conformance.hpp", "conformance.cpp")
+    )
 
 
 def _plugin(order: ExportOrder) -> ExportedFiles:
     """Write the export and Unreal's plugin, the C++ runtime inside it."""
     made = write_with_sounds(order)
     files = copy_runtime(RUNTIMES / "unreal", order.folder / PLUGIN)
-    core = order.folder / PLUGIN / "Source" / "Metagraph" / "Private" / "Core"
-    files += copy_runtime(
-        RUNTIMES / "cpp", core, ("README.md", "LICENSE", "conformance.hpp", "conformance.cpp")
-    )
+    files += copy_core(order.folder / PLUGIN / CORE_IN_PLUGIN)
     return ExportedFiles((*made.files, *files), made.notes)
 
 
@@ -151,7 +185,7 @@ TARGETS = (
     ExportTarget(
         "godot",
         phrase("Godot 4 add-on"),
-        phrase("a scene that plays, JSON, GLB and the GDScript runtime in addons/metagraph/"),
+        phrase("scenes that play, an AnimationLibrary, JSON, GLB and the add-on in addons/metagraph/"),
         _godot,
         (BML,),
         group=phrase("Same playback as the preview"),
@@ -159,7 +193,7 @@ TARGETS = (
     ExportTarget(
         "unity",
         phrase("Unity package"),
-        phrase("JSON, GLB and the C# runtime in Metagraph/"),
+        phrase("a file that imports as a character with clips, JSON, GLB and the C# package in Metagraph/"),
         _unity,
         (BML,),
         untried=phrase("compiled and tested outside Unity; not tested in Unity"),

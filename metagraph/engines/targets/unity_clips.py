@@ -34,8 +34,8 @@ from metagraph.motion.skeleton import Pose
 
 Array = NDArray[Any]
 
-# How far thinned curves may be off: length of a quaternion's error (0.05 degrees), metres.
-TURN, SHIFT = 4e-4, 2e-4
+# How far thinned curves may be off: length of a quaternion's error (0.09 degrees), metres.
+TURN, SHIFT = 8e-4, 4e-4
 
 _CURVE = """  - curve:
       serializedVersion: 2
@@ -121,7 +121,8 @@ def format_clip_asset(
         "m_FloatCurves": [],
         "m_PPtrCurves": [],
     }
-    whole |= {"m_SampleRate": clip.fps, "m_WrapMode": 0, "m_Bounds": {"m_Center": zero, "m_Extent": zero}}
+    whole |= {"m_SampleRate": max(1, round(clip.fps)), "m_WrapMode": 0}
+    whole |= {"m_Bounds": {"m_Center": zero, "m_Extent": zero}}
     whole |= {"m_ClipBindingConstant": {"genericBindings": Written("\n".join(bound)), "pptrCurveMapping": []}}
     whole |= {"m_AnimationClipSettings": _settings(clip.duration, loop, reference)}
     whole |= {

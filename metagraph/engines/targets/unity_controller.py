@@ -4,27 +4,32 @@ own text assets.
 Parameters, for each layer: the integers `<layer>_stance` and `<layer>_action`, and the trigger
 `<layer>_play`, see `metagraph.engines.engine_machine`. At the bottom is a layer that holds the base pose; the
 body overwrites it, arms and head add to it what their clips differ from it.
+
+Each stance is a sub-state machine. What ends leads to the sub-state machine of its end stance, whose entry
+transitions choose: the action that was asked for, else the transition towards the stance that was asked for,
+else the loop. So a state needs three transitions instead of one to each other state. Only loops, which are
+left at any time, have a transition to each action of their stance.
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Mapping
-from pathlib import Path
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from metagraph.common.wording import phrase
-from metagraph.engines.engine_machine import Arrow, EngineState, Machine, list_machines, make_animations
+from metagraph.engines.engine_machine import EngineState, Machine, list_machines, make_animations
 from metagraph.engines.engine_names import name_files
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, PROPS, WEIGHTS
 from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.engines.targets.unity_clips import Moving, format_clip_asset
+from metagraph.engines.targets.unity_package import PackedAsset, pack_assets
 from metagraph.engines.targets.unity_yaml import (
     CLIP,
     CONTROLLER,
+    ENTRY,
     MASK,
     NOTHING,
     STATE,
@@ -42,12 +47,14 @@ from metagraph.engines.targets.unity_yaml import (
 )
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
+from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 
 BASE = "base"  # the layer at the bottom, its state and clip
-IF, EQUALS = 1, 6  # modes of conditions
+IF, EQUALS, DIFFERS = 1, 6, 7  # modes of conditions
+ROWS = 20  # of states in a column of the Animator window
 INTEGER, TRIGGER = 3, 9  # types of parameters
 Row = tuple[int, int, str, Mapping[str, Any]]
 
@@ -56,6 +63,10 @@ MOMENT = Loss(
         "a request that comes after an action's earliest exit waits until the action ends, "
         "because an exit time is a single moment"
     )
+)
+BLENDS = Loss(phrase("the length of a blend depends on the action that ends, not on the one that begins"))
+ELSEWHERE = Loss(
+    phrase("a request for an action of another stance is lost if it comes while an action plays")
 )
 UNTRIED = phrase("written field by field as Unity writes its own files; not tested in Unity")
 
@@ -91,13 +102,22 @@ def write_unity_controller(
     )
     objects: list[Row] = [(CONTROLLER, main_id(CONTROLLER), "AnimatorController", whole)]
     objects += [
-        _machine(BASE, [(BASE, 0, 0)], BASE),
+        _machine(BASE, make_local_id("layer", BASE), [BASE], BASE),
         _state(BASE, to(CLIP, project.name, f"{BASE}.anim"), []),
     ]
     for machine in built:
-        objects.append(_machine(machine.layer, list(_places(machine)), machine.start.name))
+        subs = {stance: make_local_id("stance", machine.layer, stance) for stance in machine.stances}
+        top = make_local_id("layer", machine.layer)
+        objects.append(_machine(machine.layer, top, [], machine.start.name, [*subs.values()]))
+        names = {ident: stance.name for ident, stance in machine.graph.stances.items()}
+        for stance, ident in subs.items():
+            own = [state.name for state in machine.states if state.action.stance == stance]
+            entering = list(_entries(machine, stance))
+            rest = machine.rest(stance).name
+            objects.append(_machine(names[stance], ident, own, rest, (), entering))
+            objects += entering
         for state in machine.states:
-            leaving = list(_transitions(machine, state, seconds[state.name]))
+            leaving = list(_transitions(machine, state, seconds[state.name], subs))
             clip = to(CLIP, project.name, f"{clips[state.name]}.anim")
             objects.append(_state(state.name, clip, leaving, state.action.name))
             objects += leaving
@@ -125,30 +145,36 @@ def _layer(name: str, mask: Inline, adds: bool) -> dict[str, Any]:
     }
 
 
-def _places(machine: Machine) -> Iterator[tuple[str, int, int]]:
-    """Yield the states with their column and row in the window: a column for each stance."""
-    columns = {stance: column for column, stance in enumerate(machine.stances)}
-    filled: Counter[int] = Counter()
-    for state in machine.states:
-        column = columns[state.action.stance]
-        yield state.name, column, filled[column]
-        filled[column] += 1
-
-
-def _machine(layer: str, places: list[tuple[str, int, int]], start: str) -> Row:
+def _machine(
+    name: str,
+    ident: int,
+    states: Sequence[str],
+    start: str,
+    below: Sequence[int] = (),
+    entering: Sequence[Row] = (),
+) -> Row:
+    """Return a state machine. states: the names of its own; below: the ids of state machines in it."""
     children = [
         {
             "serializedVersion": 1,
-            "m_State": Inline(fileID=make_local_id(name)),
-            "m_Position": _at(300 + 260 * column, 120 + 60 * row),
+            "m_State": Inline(fileID=make_local_id(state)),
+            "m_Position": _at(300 + 260 * (n // ROWS), 120 + 60 * (n % ROWS)),
         }
-        for name, column, row in places
+        for n, state in enumerate(states)
+    ]
+    within = [
+        {
+            "serializedVersion": 1,
+            "m_StateMachine": Inline(fileID=ident),
+            "m_Position": _at(300, 120 + 60 * row),
+        }
+        for row, ident in enumerate(below)
     ]
     own: dict[str, Any] = {
         "m_ChildStates": children,
-        "m_ChildStateMachines": [],
+        "m_ChildStateMachines": within,
         "m_AnyStateTransitions": [],
-        "m_EntryTransitions": [],
+        "m_EntryTransitions": [Inline(fileID=row[1]) for row in entering],
     }
     own |= {
         "m_StateMachineTransitions": Inline(),
@@ -163,9 +189,9 @@ def _machine(layer: str, places: list[tuple[str, int, int]], start: str) -> Row:
     own |= {"m_DefaultState": Inline(fileID=make_local_id(start))}
     return (
         STATES,
-        make_local_id("layer", layer),
+        ident,
         "AnimatorStateMachine",
-        make_object_fields(1, layer, 6, **own),
+        make_object_fields(1, name, 6, **own),
     )
 
 
@@ -211,57 +237,93 @@ def _at(x: int, y: int) -> Inline:
     return Inline(x=x, y=y, z=0)
 
 
-def _transitions(machine: Machine, state: EngineState, seconds: float) -> Iterator[Row]:
-    """Yield the transitions that leave a state, those that come first to be taken first: one for each value,
-    since all of a transition's conditions must hold.
-    """
-    order = ("action", "stance", "done")
+def _transitions(
+    machine: Machine, state: EngineState, seconds: float, subs: Mapping[str, int]
+) -> Iterator[Row]:
+    """Yield the transitions that leave a state, those that come first to be taken first."""
+    arrows = machine.leaving[state.name]
+    if state.loop:
+        for on in ("action", "stance"):
+            for arrow in (a for a in arrows if a.on == on):
+                for value in arrow.values:
+                    yield _transition(state, arrow.target, _ask(machine, on, value), arrow.blend, 0.0)
+        return
+    end = str(find_end_stance(state.action))
+    done = next(a for a in arrows if a.on == "done")
     # What ends while it is still blended in would miss its exit, and stay for ever.
-    shown = (
-        max(
-            (a.blend for arrows in machine.leaving.values() for a in arrows if a.target is state), default=0.0
-        )
-        + 0.05
-    )
-    for arrow in sorted(machine.leaving[state.name], key=lambda a: order.index(a.on)):
-        leave = arrow.leave or 0.0
-        if arrow.on == "done":
-            yield _transition(arrow, "", [], max(leave, shown) / seconds)
-        for value in arrow.values:
-            conditions = [_condition(EQUALS, f"{machine.layer}_{arrow.on}", value)]
-            if arrow.on == "action":
-                conditions.append(_condition(IF, f"{machine.layer}_play", 0))
-            yield _transition(arrow, str(value), conditions, leave / seconds)
+    blends = [a.blend for leaving in machine.leaving.values() for a in leaving if a.target is state]
+    shown = max(blends, default=0.0) + 0.05
+    leave = min((a.leave or 0.0 for a in arrows if a.on != "done"), default=None)
+    pulled = [_condition(IF, f"{machine.layer}_play", 0)]
+    elsewhere = [_condition(DIFFERS, f"{machine.layer}_stance", machine.stances[end])]
+    if leave is not None:
+        blend = max(a.blend for a in arrows if a.on != "done")
+        yield _transition(state, end, pulled, blend, leave / seconds, subs)
+        if any(a.on == "stance" for a in arrows):
+            yield _transition(state, end, elsewhere, blend, leave / seconds, subs)
+    yield _transition(state, end, [], done.blend, max(done.leave or 0.0, shown) / seconds, subs)
+
+
+def _ask(machine: Machine, on: str, value: int) -> list[dict[str, Any]]:
+    """Return the conditions of a request."""
+    conditions = [_condition(EQUALS, f"{machine.layer}_{on}", value)]
+    return [*conditions, _condition(IF, f"{machine.layer}_play", 0)] if on == "action" else conditions
+
+
+def _entries(machine: Machine, stance: str) -> Iterator[Row]:
+    """Yield the transitions from the entry of a stance: to what was asked for."""
+    for on in ("action", "stance"):
+        for arrow in (a for a in machine.leaving[machine.rest(stance).name] if a.on == on):
+            for value in arrow.values:
+                own: dict[str, Any] = {
+                    "m_Conditions": _ask(machine, on, value),
+                    "m_DstStateMachine": NOTHING,
+                    "m_DstState": Inline(fileID=make_local_id(arrow.target.name)),
+                    "m_Solo": 0,
+                    "m_Mute": 0,
+                    "m_IsExit": 0,
+                    "serializedVersion": 1,
+                }
+                ident = make_local_id("entry", machine.layer, stance, arrow.target.name, on, str(value))
+                yield ENTRY, ident, "AnimatorTransition", make_object_fields(1, "", **own)
 
 
 def _condition(mode: int, parameter: str, value: int) -> dict[str, Any]:
     return {"m_ConditionMode": mode, "m_ConditionEvent": parameter, "m_EventTreshold": value}  # (sic)
 
 
-def _transition(arrow: Arrow, value: str, conditions: list[dict[str, Any]], leave: float) -> Row:
+def _transition(
+    source: EngineState,
+    target: EngineState | str,
+    conditions: list[dict[str, Any]],
+    blend: float,
+    leave: float,
+    subs: Mapping[str, int] | None = None,
+) -> Row:
+    """Return a transition to a state, or to a stance's sub-state machine."""
+    to_state = isinstance(target, EngineState)
     own: dict[str, Any] = {
         "m_Conditions": conditions,
-        "m_DstStateMachine": NOTHING,
-        "m_DstState": Inline(fileID=make_local_id(arrow.target.name)),
-    }
-    own |= {
+        "m_DstStateMachine": NOTHING if to_state else Inline(fileID=(subs or {})[str(target)]),
+        "m_DstState": Inline(fileID=make_local_id(target.name))
+        if isinstance(target, EngineState)
+        else NOTHING,
         "m_Solo": 0,
         "m_Mute": 0,
         "m_IsExit": 0,
         "serializedVersion": 3,
-        "m_TransitionDuration": arrow.blend,
+        "m_TransitionDuration": blend,
         "m_TransitionOffset": 0,
-    }
-    own |= {
         "m_ExitTime": leave,
         "m_HasExitTime": int(leave > 0),
         "m_HasFixedDuration": 1,
         "m_InterruptionSource": 0,
     }
-    ident = make_local_id(arrow.source.name, arrow.target.name, arrow.on, value)
+    asked = [f"{c['m_ConditionMode']} {c['m_ConditionEvent']} {c['m_EventTreshold']}" for c in conditions]
+    name = target.name if isinstance(target, EngineState) else target
     return (
         TRANSITION,
-        ident,
+        make_local_id(source.name, name, *asked),
         "AnimatorStateTransition",
         make_object_fields(1, "", **own, m_OrderedInterruption=1, m_CanTransitionToSelf=1),
     )
@@ -280,8 +342,8 @@ def make_avatar_mask(skeleton: Skeleton, machine: Machine) -> bytes:
 
 
 def write(order: ExportOrder) -> ExportedFiles:
-    """Write controller, masks, clips and a guide, each with its `.meta`, and the mesh as a GLB, where there
-    is one.
+    """Write controller, masks and clips as one package of Unity's, a guide, and the mesh as a GLB, where
+    there is one.
     """
     from metagraph.formats.gltf.writer import write_glb
 
@@ -289,15 +351,11 @@ def write(order: ExportOrder) -> ExportedFiles:
     skeleton = project.skeleton
     assert skeleton is not None
     body, notes = find_ordered_mesh(order)
-    made: list[Path] = []
+    assets: dict[str, PackedAsset] = {}
 
-    def put(name: str, content: bytes, klass: int | None) -> None:
-        for path, data in (
-            (order.folder / name, content),
-            (order.folder / f"{name}.meta", write_meta(make_guid(project.name, name), klass)),
-        ):
-            write_atomically(path, data)
-            made.append(path)
+    def put(name: str, content: bytes, klass: int) -> None:
+        guid = make_guid(project.name, name)
+        assets[f"Assets/{order.stem}/{name}"] = PackedAsset(guid, content, write_meta(guid, klass))
 
     states = [state for machine in built for state in machine.states]
     clips = {clip.name: clip for clip in make_animations(project, built)}
@@ -317,7 +375,7 @@ def write(order: ExportOrder) -> ExportedFiles:
         put(f"{machine.layer}.mask", make_avatar_mask(skeleton, machine), MASK)
         moving = _moving([skeleton.index(name) for name in machine.joints], shifted)
         for state in machine.states:
-            order.tell(len(made) // 2, len(states) + len(built) + 3, state.name)
+            order.tell(len(assets), len(states) + len(built) + 3, state.name)
             pose = None if machine.layer == "body" else reference
             name = names[state.name]
             put(
@@ -331,11 +389,13 @@ def write(order: ExportOrder) -> ExportedFiles:
         write_unity_controller(project, order.stem, built, names, seconds),
         CONTROLLER,
     )
-    put(f"{order.stem}.unity.md", write_unity_guide(order.stem, skeleton, built).encode(), None)
+    made = [order.folder / f"{order.stem}.unitypackage", order.folder / f"{order.stem}.unity.md"]
+    write_atomically(made[0], pack_assets(assets))
+    write_atomically(made[1], write_unity_guide(order.stem, skeleton, built).encode())
     if body is not None:
         made.append(order.folder / f"{order.stem}.glb")
         write_glb(made[-1], [], body)
-    order.tell(len(made) // 2, len(made) // 2, "done")
+    order.tell(1, 1, "done")
     slashed = [name for name in skeleton.names if "/" in name]
     if slashed:
         notes += (f"Unity's paths cannot lead to joints with a slash in their names: {', '.join(slashed)}",)
@@ -357,14 +417,19 @@ def write_unity_guide(stem: str, skeleton: Skeleton, built: tuple[Machine, ...])
 
 These are Unity's own text assets; they need no plug-in. {UNTRIED[0].upper()}{UNTRIED[1:]}.
 
-1. Drop the whole folder, `.meta` files included, into `Assets`. Asset Serialization (project settings, Editor): Force Text, the default.
-2. The character must be the skeleton the clips were made for, its joints with the same names in the same hierarchy, in metres: the export's
-   GLB (imported by the glTFast or UnityGLTF package) or an FBX file. In the import settings: rig Generic, root node None, Optimize Game
-   Objects off. Not Humanoid: clips and masks go by the joints' names.
-3. Put an `Animator` on the object that {roots} is directly in (paths begin there), with `{stem}.controller` as its Controller. Avatar:
-   the rig's, or none. Apply Root Motion: off.
+| File | What it is |
+|---|---|
+| `{stem}.unitypackage` | the Animator Controller, Avatar Masks and clips |
+| `{stem}.glb` | the character's mesh, if the export has one |
 
-## Asking
+## Steps
+
+1. Open your Unity project and double-click `{stem}.unitypackage`. Press *Import*.
+2. Put the character into the scene: `{stem}.glb`, with the package glTFast or UnityGLTF, or an FBX file with the same skeleton. In its
+   import settings choose the rig *Generic*, and turn *Optimize Game Objects* off.
+3. Put an `Animator` on the object that {roots} is directly in, with `{stem}.controller` as its Controller. Turn *Apply Root Motion* off.
+
+## Requests
 
 ```csharp
 animator.SetInteger("{layer}_stance", {number});   // go to "{_cell(machine.graph.stances[stance].name)}" by whatever leads there, and stay
@@ -372,11 +437,10 @@ animator.SetInteger("{layer}_action", {play.number});   // play "{_cell(play.act
 animator.SetTrigger("{layer}_play");        // ... once, as soon as what plays may be left
 ```
 
-An action plays from the stance it belongs to: go there first. After a transition that was asked for as an action, set `<layer>_stance` to
-where it led, or the layer goes back. A trigger waits until it is used; `ResetTrigger` takes it back.
-
-The layer `{BASE}` holds the base pose; `body` overwrites it; arms and head are additive to it, for which their clips have it as additive
-reference pose (`{BASE}.anim`).
+- Each stance is a sub-state machine. An action plays from its own stance, so go there first.
+- If you request a transition as an action, set `<layer>_stance` to the stance it leads to. Else the layer goes back.
+- While an action plays, a request waits for its earliest exit. A request for an action of another stance is lost then.
+- The layer `{BASE}` holds the base pose. `body` overwrites it. Arms and head are additive to `{BASE}.anim`.
 {tables}"""
 
 
@@ -409,11 +473,11 @@ TARGETS = (
         "unity-controller",
         "Unity Animator Controller",
         phrase(
-            "an Animator Controller, Avatar Masks and clips as Unity text assets, a guide to them, "
+            "a Unity package with an Animator Controller, Avatar Masks and clips, a guide to them, "
             "and the mesh as a GLB"
         ),
         write,
-        (*MACHINE, WEIGHTS, CROSSFADE, MOMENT, PROPS),
+        (*MACHINE, WEIGHTS, CROSSFADE, BLENDS, MOMENT, ELSEWHERE, PROPS),
         UNTRIED,
     ),
 )

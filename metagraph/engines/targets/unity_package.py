@@ -1,8 +1,12 @@
-"""The Unity package of an export: the runtime's files, each with the `.meta` that Unity would make."""
+"""Packages for Unity: the runtime's files, each with the `.meta` Unity would make, and `.unitypackage`."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import gzip
+import io
+import tarfile
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from metagraph.engines.targets.unity_yaml import make_guid
@@ -41,3 +45,28 @@ def _meta(inside: PurePosixPath, is_folder: bool) -> str:
     importer = "DefaultImporter:\n  externalObjects: {}\n"
     kind = "folderAsset: yes\n" + importer if is_folder else _IMPORTERS.get(inside.suffix, importer)
     return f"fileFormatVersion: 2\nguid: {make_guid(PACKAGE, str(inside))}\n{kind}{_REST}"
+
+
+@dataclass(frozen=True)
+class PackedAsset:
+    """An asset of a `.unitypackage`: its id, its bytes and its `.meta`."""
+
+    guid: str
+    content: bytes
+    meta: bytes
+
+
+def pack_assets(assets: Mapping[str, PackedAsset]) -> bytes:
+    """Return a `.unitypackage`, which Unity imports when it is opened. assets: by their paths."""
+    out = io.BytesIO()
+    with (
+        gzip.GzipFile(fileobj=out, mode="wb", mtime=0) as packed,
+        tarfile.open(fileobj=packed, mode="w", format=tarfile.USTAR_FORMAT) as archive,
+    ):
+        for path, asset in assets.items():
+            parts = (("asset", asset.content), ("asset.meta", asset.meta), ("pathname", path.encode()))
+            for name, data in parts:
+                entry = tarfile.TarInfo(f"{asset.guid}/{name}")
+                entry.size = len(data)
+                archive.addfile(entry, io.BytesIO(data))
+    return out.getvalue()

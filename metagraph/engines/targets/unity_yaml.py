@@ -17,7 +17,7 @@ from metagraph.motion.skeleton import Skeleton
 Array = NDArray[Any]
 
 # Unity's numbers for its classes. An asset's main object has the id `klass * 100000`.
-CLIP, CONTROLLER, MASK, TRANSITION, STATE, STATES = 74, 91, 319, 1101, 1102, 1107
+CLIP, CONTROLLER, MASK, TRANSITION, STATE, STATES, ENTRY = 74, 91, 319, 1101, 1102, 1107, 1109
 
 
 class Inline(dict[str, Any]):

@@ -22,6 +22,8 @@ from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.losses import PERFORMANCES, PROPS
 from metagraph.engines.targets.meshes import find_ordered_mesh
 from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
+from metagraph.engines.targets.vrm_springs import EXTENSION as SPRINGS
+from metagraph.engines.targets.vrm_springs import read_spring_bones
 from metagraph.errors import FileError
 from metagraph.formats.gltf.writer import ForEngine, write_glb
 from metagraph.graph import anatomy
@@ -205,13 +207,28 @@ def _write(order: ExportOrder) -> ExportedFiles:
     clips = [fit_curves_to_face(project, motion) for motion in played if motion is not None]
     names = make_names_unique([clip.name for clip in clips])
     path = order.folder / f"{order.stem}.vrm"
+    extensions = {"VRMC_vrm": make_vrm_extension(project, bones, body.morphs, mesh, meta)}
+    source = order.contents.character
+    if isinstance(source, Path):
+        springs, lost = read_spring_bones(source, skeleton)
+        if springs is not None:
+            extensions[SPRINGS] = springs
+        if lost:
+            notes = (
+                *notes,
+                plural_phrase(
+                    "{count} joint of the spring bones is left out: the skeleton of the clips lacks it",
+                    "{count} joints of the spring bones are left out: the skeleton of the clips lacks them",
+                    lost,
+                ),
+            )
     write_glb(
         path,
         [replace(c.renamed(n), skeleton=skeleton) for c, n in zip(clips, names, strict=True)],
-        replace(body, skeleton=skeleton),
+        body,
         engine=ForEngine(
             stand=stand,
-            extensions={"VRMC_vrm": make_vrm_extension(project, bones, body.morphs, mesh, meta)},
+            extensions=extensions,
         ),
     )
     order.tell(2, 2, "done")

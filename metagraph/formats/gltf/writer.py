@@ -28,7 +28,7 @@ from metagraph.formats.gltf.key_thinning import find_kept_frames
 from metagraph.formats.gltf.materials import add_materials
 from metagraph.formats.gltf.placed_props import PlacedProp, add_props
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import CharacterMesh
+from metagraph.motion.character_mesh import CharacterMesh, is_bound_to
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
 
@@ -102,7 +102,8 @@ def write_glb(
 ) -> None:
     """Write one skeleton, its skin and every clip as an animation.
 
-    All `clips` are on the same skeleton, which is also the character's. `compress` packs the file with
+    All `clips` are on the same skeleton. The character's has the same joints; where it rests in another pose,
+    the skin is bound in that. `compress` packs the file with
     EXT_meshopt_compression and KHR_mesh_quantization, which readers must then support, and leaves out
     channels that keep a joint as its node is posed. Raises FileError if the file cannot be written,
     ValueError for mixed skeletons.
@@ -110,7 +111,9 @@ def write_glb(
     path = Path(path)
     if not clips and character is None:
         raise ValueError("nothing to write: neither a clip nor a character")
-    skeleton = character.skeleton if character is not None else clips[0].skeleton
+    skeleton = clips[0].skeleton if clips or character is None else character.skeleton
+    if character is not None and not is_bound_to(character, skeleton):
+        raise ValueError(f"the character '{character.name}' is on another skeleton; fit it first")
     for clip in clips:
         if clip.skeleton is not skeleton and clip.skeleton != skeleton:
             raise ValueError(f"clip '{clip.name}' is on another skeleton; retarget it first")
@@ -144,7 +147,8 @@ class _File:
         if len(roots) > 1:
             self.nodes.append({"name": "Armature", "children": roots})
             roots = [len(self.nodes) - 1]
-        self.document["skins"] = [_skin(self.body, self.skeleton, roots[0])]
+        bound = self.skeleton if character is None else character.skeleton
+        self.document["skins"] = [_skin(self.body, bound, roots[0])]
         if character is not None:
             self.mesh_node = _add_character(self.document, self.body, character)
             self.morphs = character.morphs

@@ -30,7 +30,7 @@ from metagraph.formats.usd.usda import (
     write_usd_layer,
 )
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, is_bound_to
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 
@@ -58,16 +58,18 @@ def write_usd(
     for mixed skeletons.
     """
     path = Path(path)
-    for other in (*(c.skeleton for c in clips), *([character.skeleton] if character is not None else [])):
-        if other is not skeleton and other != skeleton:
-            raise ValueError("a clip or the mesh is on another skeleton; retarget it first")
+    if any(clip.skeleton is not skeleton and clip.skeleton != skeleton for clip in clips):
+        raise ValueError("a clip is on another skeleton; retarget it first")
+    if character is not None and not is_bound_to(character, skeleton):
+        raise ValueError("the mesh is on another skeleton; fit it first")
     rate = Counter(clip.fps for clip in clips).most_common(1)[0][0] if clips else FPS
     joints = list_joint_paths(skeleton)
     places = find_clip_paths([clip.name for clip in clips])
     root = Prim("SkelRoot", CHARACTER[1:], ['kind = "component"', *metadata])
     if clips:
         _choose(root, places, places[clips[0].name if playing is None else playing])
-    root.children.append(_skeleton(skeleton, joints))
+    bound = skeleton if character is None else character.skeleton
+    root.children.append(_skeleton(skeleton, bound, joints))
     files: list[tuple[Path, bytes]] = []
     if character is not None and len(character.triangles):
         looks, files = _materials(character, path)
@@ -127,8 +129,9 @@ def _choose(root: Prim, places: dict[str, str], playing: str) -> None:
     root.properties.append("}")
 
 
-def _skeleton(skeleton: Skeleton, joints: list[str]) -> Prim:
-    turns, places = skeleton.globals(skeleton.rest)
+def _skeleton(skeleton: Skeleton, bound: Skeleton, joints: list[str]) -> Prim:
+    """bound: the same joints, at rest in the pose in which the mesh is bound."""
+    turns, places = bound.globals(bound.rest)
     return Prim(
         "Skeleton",
         "Skeleton",

@@ -263,15 +263,15 @@ def find_asked(track: Track, last: Speech | None, continues: bool, ident: str, s
     return soon if known is None else max(soon, known.asked + TOGETHER)
 
 
-def _steer(requests: Sequence[MetaRequest], heard: Heard, meant: Meaning, now: float, soon: float) -> Heard:
+def _steer(requests: Sequence[MetaRequest], told: Heard, meant: Meaning, now: float, soon: float) -> Heard:
     """Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the
     plan before.
     """
     if len(meant.steered) == 0:
-        return heard
-    steered = SteeredSpeech(heard.track, set(heard.withdrawn), set(heard.stopped), set(heard.touched))
-    steered.requests = [r for r in requests if r.id not in heard.withdrawn]
-    for request in heard.fresh:
+        return told
+    steered = SteeredSpeech(told.track, set(told.withdrawn), set(told.stopped), set(told.touched))
+    steered.requests = [r for r in requests if r.id not in told.withdrawn]
+    for request in told.fresh:
         steered.requests.append(request)
         steered.anew.add(request.id)
     for ask in meant.steered:

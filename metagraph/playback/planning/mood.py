@@ -271,12 +271,12 @@ def drag(seconds: float, speed: float) -> float:
     return seconds * (1 / speed - 1)
 
 
-def turn_extent(extent: float, real: float) -> float:
-    """Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of
+def turn_extent(factor: float, real: float) -> float:
+    """Return how far a joint turns away from its stance, a factor, for that of a cue. real: the real part of
     the original rotation, a unit quaternion. Rotations of nearly half a circle, whose short way changes
     sides, stay as they are.
     """
-    return 1 + (extent - 1) * faded((abs(real) - 0.1) / 0.4)
+    return 1 + (factor - 1) * faded((abs(real) - 0.1) / 0.4)
 
 
 def made_for(mood: Mood, tags: Sequence[str]) -> bool:

@@ -281,6 +281,9 @@ public:
     UActorComponent* Before = nullptr;
     FTransform Transform;
 
+    UClass* Class = nullptr;
+    UClass* GetAnimClass() const { return Class; }
+    void SetAnimInstanceClass(UClass* given) { Class = given; }
     void SetMorphTarget(FName name, float value, bool) { Morphs[name] = value; }
     void AddTickPrerequisiteComponent(UActorComponent* component) { Before = component; }
     const FTransform& GetComponentTransform() const { return Transform; }
@@ -351,9 +354,22 @@ struct FCompactPose {
     FTransform& operator[](const FCompactPoseBoneIndex& place) { return Transforms.at(static_cast<std::size_t>(place.GetInt())); }
 };
 
+class UAnimInstance;
+struct FPoseContext;
 struct FAnimInstanceProxy {
     FBoneContainer Required;
+    FAnimInstanceProxy() = default;
+    explicit FAnimInstanceProxy(UAnimInstance*) {}
+    virtual ~FAnimInstanceProxy() = default;
     const FBoneContainer& GetRequiredBones() const { return Required; }
+    virtual void PreUpdate(UAnimInstance*, float) {}
+    virtual void CacheBones() {}
+    virtual bool Evaluate(FPoseContext&) { return false; }
+};
+struct FBlendedCurve {
+    std::map<FName, float> Values;
+    void Set(const FName& name, float value) { Values[name] = value; }
+    float Get(const FName& name) const { return Values.count(name) ? Values.at(name) : 0.0f; }
 };
 struct FAnimationBaseContext {
     FAnimInstanceProxy* AnimInstanceProxy = nullptr;
@@ -363,6 +379,10 @@ struct FAnimationCacheBonesContext : FAnimationBaseContext {};
 struct FAnimationUpdateContext : FAnimationBaseContext {};
 struct FPoseContext : FAnimationBaseContext {
     FCompactPose Pose;
+    FBlendedCurve Curve;
+    void ResetToRefPose() {
+        for (FTransform& one : Pose.Transforms) one = FTransform();
+    }
 };
 struct FNodeDebugData {
     FString GetNodeName(const void*) const { return FString(); }
@@ -383,6 +403,9 @@ class UAnimInstance : public UObject {
 public:
     AActor* Actor = nullptr;
     AActor* GetOwningActor() const { return Actor; }
+
+protected:
+    virtual FAnimInstanceProxy* CreateAnimInstanceProxy() { return nullptr; }
 };
 
 struct FAnimNode_Base {

@@ -1,8 +1,10 @@
 // Plays the plugin against the stand-ins: the node shows the vectors' poses, the component a character's.
 #include "AnimNode_Metagraph.cpp"
 #include "MetagraphAsset.cpp"
+#include "MetagraphAnimInstance.cpp"
 #include "MetagraphComponent.cpp"
 #include "MetagraphModule.cpp"
+#include "MetagraphShown.cpp"
 
 #include "AnimGraphNode_Metagraph.cpp"
 #include "MetagraphEditorModule.cpp"
@@ -161,6 +163,69 @@ static int Play(UMetagraphAsset& asset) {
     return 0;
 }
 
+/// Makes what evaluates it, as Unreal does.
+struct Instance : UMetagraphAnimInstance {
+    std::unique_ptr<FAnimInstanceProxy> Made() { return std::unique_ptr<FAnimInstanceProxy>(CreateAnimInstanceProxy()); }
+};
+
+/// Without an animation blueprint: what the mesh shows is the component's pose, and morph targets are curves.
+static int Drive(UMetagraphAsset& asset) {
+    AActor actor;
+    USkeletalMeshComponent mesh, other;
+    struct Component : UMetagraphComponent {
+        UClass* GetClass() const override { return UMetagraphComponent::StaticClass(); }
+    } component;
+    actor.Components = {&mesh, &component};
+    component.Owner = mesh.Owner = &actor;
+    component.Asset = &asset;
+    component.BeginPlay();
+    std::cout << "class " << (mesh.Class == UMetagraphAnimInstance::StaticClass());
+    component.bDriveMesh = false;
+    mesh.Class = nullptr;
+    component.BeginPlay();
+    std::cout << " " << (mesh.Class == nullptr) << "\n";
+    component.Say(FString(u"Hello! How are you?"));
+    Instance instance;
+    instance.Actor = &actor;
+    const std::unique_ptr<FAnimInstanceProxy> proxy = instance.Made();
+    const metagraph::Graph& graph = *asset.Graph()->Graph;
+    FPoseContext output = Mesh(graph, graph.joints.size());
+    proxy->Required = output.Pose.Container;
+    float most = 0;
+    double apart = 0;
+    int shown = 0;
+    for (int frame = 0; frame < 100; frame++) {
+        component.TickComponent(0.02f, LEVELTICK_All, nullptr);
+        proxy->PreUpdate(&instance, 0.02f);
+        if (frame == 0) proxy->CacheBones();
+        shown += proxy->Evaluate(output);
+        const FMetagraphPose& pose = *component.Pose();
+        for (int32 n = 0; n < pose.Curves.Num(); n++) {
+            most = std::max(most, output.Curve.Get(pose.Curves[n]));
+            apart = std::max(apart, static_cast<double>(std::abs(output.Curve.Get(pose.Curves[n]) - mesh.Morphs[pose.Curves[n]])));
+        }
+        for (int32 n = 0; n < pose.Bones.Num(); n++) {
+            const FMeshPoseBoneIndex place(output.Pose.Container.GetPoseBoneIndexForBoneName(pose.Bones[n]));
+            const FVector off = output.Pose[output.Pose.Container.MakeCompactPoseIndex(place)].GetLocation() - pose.Transforms[n].GetLocation();
+            apart = std::max({apart, std::abs(off.X), std::abs(off.Y), std::abs(off.Z)});
+        }
+    }
+    std::cout << "shown " << shown << " " << (apart < 1e-6 ? "same" : "apart") << " " << (most > 0.05f ? "curves" : "still") << "\n";
+    FAnimNode_Metagraph face;
+    face.Take(component.Pose());
+    face.bBones = false;
+    face.Alpha = 0.5f;
+    FPoseContext half = Mesh(graph, graph.joints.size());
+    face.Evaluate_AnyThread(half);
+    double moved = 0, wrong = 0;
+    for (const FTransform& one : half.Pose.Transforms) moved += std::abs(one.GetLocation().Z);
+    for (int32 n = 0; n < component.Pose()->Curves.Num(); n++) {
+        wrong += std::abs(half.Curve.Get(component.Pose()->Curves[n]) - component.Pose()->Weights[n] / 2);
+    }
+    std::cout << "face " << (moved == 0 && wrong < 1e-6 ? "alone" : "wrong") << " " << component.Pose()->Curves.Num() << "\n";
+    return 0;
+}
+
 int main(int, char** words) {
     const std::string what = words[1];
     if (what == "space") return Space();
@@ -175,7 +240,7 @@ int main(int, char** words) {
         return 3;
     }
     UMetagraphAsset& asset = static_cast<UMetagraphAsset&>(*made);
-    const int out = what == "vectors" ? Vectors(words[3], asset) : what == "play" ? Play(asset) : 0;
+    const int out = what == "vectors" ? Vectors(words[3], asset) : what == "play" ? Play(asset) : what == "drive" ? Drive(asset) : 0;
     delete made;
     return out;
 }

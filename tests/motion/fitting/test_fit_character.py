@@ -11,6 +11,7 @@ import pytest
 
 from metagraph.formats.clips import read_clips
 from metagraph.formats.gltf.reader import read_character
+from metagraph.formats.gltf.writer import write_glb
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.clip import Clip
@@ -20,9 +21,9 @@ from metagraph.motion.fitting.fit_character import (
     is_named_alike,
     put_on_skeleton,
 )
-from metagraph.motion.fitting.footing import find_footing
+from metagraph.motion.fitting.footing import Footing, find_footing
 from metagraph.motion.joint_map import find_known_roles
-from metagraph.motion.skeleton import Skeleton
+from metagraph.motion.skeleton import Pose, Skeleton
 from preview.figure import SkinnedFigure
 
 SAMPLE = Path(__file__).parents[3] / "sample_clips"
@@ -180,3 +181,28 @@ def test_on_real_skeletons_each_part_is_where_its_joint_is_in_every_pose(
             made = np.linalg.norm(ada().positions[whole] - rest[own[role]], axis=1)
             found = np.linalg.norm(points[whole] - places[roles[role]], axis=1)
             assert np.median(found) < 3 * tall * np.median(made), f"{role} in frame {frame}"
+
+
+def test_on_a_skeleton_that_rests_folded_what_is_exported_is_what_is_drawn(tmp_path: Path) -> None:
+    """Its rest is bent by a right angle at the waist and the knees, as recorded skeletons may be."""
+    own = ada().skeleton
+    rotations = own.rest_rotations.copy()
+    for name, axis in (("Spine", [1.0, 0, 0]), ("LeftLowerLeg", [1.0, 0, 0]), ("Neck", [0, 1.0, 0])):
+        joint = own.index(name)
+        bent = rotation.from_axis_angle(np.array(axis), np.array(1.5))
+        rotations[joint] = rotation.multiply(rotations[joint], bent)
+    names = tuple(f"rig:{name}" for name in own.names)
+    folded = Skeleton(names, own.parents, rotations, own.rest_translations)
+    standing = Footing(Pose(own.rest_rotations, own.rest_translations))
+    fitted = fit_character(ada(), folded, standing)
+    here = folded.globals(standing.pose)
+    assert np.abs(posed(fitted, folded, *here) - ada().positions).max() < 0.004
+    clip = read_clips(SAMPLE / "clips" / "hands_at_sides__wave_hello_rt_01.glb")[0]
+    write_glb(tmp_path / "folded.glb", [replace(clip, skeleton=folded, morphs=(), weights=None)], fitted)
+    written = read_character(tmp_path / "folded.glb")
+    there = written.skeleton.globals(clip.pose_at(1.2))
+    waving = folded.globals(clip.pose_at(1.2))
+    drawn, read = posed(fitted, folded, *waving), posed(written, written.skeleton, *there)
+    for points in (drawn[::97], drawn[1::101]):
+        apart = np.linalg.norm(read[:, None] - points, axis=2).min(0)
+        assert apart.max() < 1e-3

@@ -45,7 +45,7 @@ inline double find_asked(
 );
 inline Ref<Heard> _steer(
     const List<Ref<MetaRequest>>& requests,
-    const Ref<Heard>& heard,
+    const Ref<Heard>& told,
     const Ref<Meaning>& meant,
     double now,
     double soon
@@ -699,28 +699,28 @@ inline double find_asked(
 /// Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the plan before.
 inline Ref<Heard> _steer(
     const List<Ref<MetaRequest>>& requests,
-    const Ref<Heard>& heard,
+    const Ref<Heard>& told,
     const Ref<Meaning>& meant,
     double now,
     double soon
 ) {
     if (lang::len(meant->steered) == 0) {
-        return heard;
+        return told;
     }
     Ref<SteeredSpeech> steered = lang::made<SteeredSpeech>(
-        heard->track,
-        lang::set_of(heard->withdrawn),
-        lang::set_of(heard->stopped),
-        lang::set_of(heard->touched)
+        told->track,
+        lang::set_of(told->withdrawn),
+        lang::set_of(told->stopped),
+        lang::set_of(told->touched)
     );
     List<Ref<MetaRequest>> found;
     for (const auto& r : requests) {
-        if (!lang::contains(heard->withdrawn, r->id)) {
+        if (!lang::contains(told->withdrawn, r->id)) {
             found.push_back(r);
         }
     }
     steered->requests = found;
-    for (const auto& request : heard->fresh) {
+    for (const auto& request : told->fresh) {
         steered->requests.push_back(request);
         steered->anew.insert(request->id);
     }

@@ -80,7 +80,7 @@ inline double anger(const Ref<Mood>& mood);
 inline double extent(const Ref<Mood>& mood);
 inline double tempo(const Ref<Mood>& mood);
 inline double drag(double seconds, double speed);
-inline double turn_extent(double extent, double real);
+inline double turn_extent(double factor, double real);
 inline bool made_for(const Ref<Mood>& mood, const List<std::string>& tags);
 inline double distance(const Ref<Mood>& mood, const std::string& name);
 inline double favour(const Ref<Mood>& mood, const List<std::string>& tags, double vigour);
@@ -363,10 +363,10 @@ inline double drag(double seconds, double speed) {
     return seconds * (lang::divided(1, speed) - 1);
 }
 
-/// Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of the original
+/// Return how far a joint turns away from its stance, a factor, for that of a cue. real: the real part of the original
 /// rotation, a unit quaternion. Rotations of nearly half a circle, whose short way changes sides, stay as they are.
-inline double turn_extent(double extent, double real) {
-    return 1 + (extent - 1) * mood::faded((std::abs(real) - 0.1) / 0.4);
+inline double turn_extent(double factor, double real) {
+    return 1 + (factor - 1) * mood::faded((std::abs(real) - 0.1) / 0.4);
 }
 
 /// Return whether an action was made for a mood: whether it has the tag of a mood that is near.

@@ -332,19 +332,19 @@ export function findAsked(track, last, continues, ident, soon) {
 /**
  * Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the plan before.
  * @param {MetaRequest[]} requests
- * @param {Heard} heard
+ * @param {Heard} told
  * @param {Meaning} meant
  * @param {number} now
  * @param {number} soon
  * @returns {Heard}
  */
-function _steer(requests, heard, meant, now, soon) {
+function _steer(requests, told, meant, now, soon) {
   if (meant.steered.length === 0) {
-    return heard;
+    return told;
   }
-  const steered = new SteeredSpeech(heard.track, new Set(heard.withdrawn), new Set(heard.stopped), new Set(heard.touched));
-  steered.requests = requests.filter((r) => !heard.withdrawn.has(r.id));
-  for (const request of heard.fresh) {
+  const steered = new SteeredSpeech(told.track, new Set(told.withdrawn), new Set(told.stopped), new Set(told.touched));
+  steered.requests = requests.filter((r) => !told.withdrawn.has(r.id));
+  for (const request of told.fresh) {
     steered.requests.push(request);
     steered.anew.add(request.id);
   }

@@ -374,14 +374,14 @@ export function drag(seconds, speed) {
 }
 
 /**
- * Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of the original
+ * Return how far a joint turns away from its stance, a factor, for that of a cue. real: the real part of the original
  * rotation, a unit quaternion. Rotations of nearly half a circle, whose short way changes sides, stay as they are.
- * @param {number} extent
+ * @param {number} factor
  * @param {number} real
  * @returns {number}
  */
-export function turnExtent(extent, real) {
-  return 1 + (extent - 1) * faded((Math.abs(real) - 0.1) / 0.4);
+export function turnExtent(factor, real) {
+  return 1 + (factor - 1) * faded((Math.abs(real) - 0.1) / 0.4);
 }
 
 /**

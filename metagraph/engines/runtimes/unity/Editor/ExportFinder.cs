@@ -4,7 +4,7 @@ using UnityEngine;
 
 namespace Metagraph
 {
-    /// <summary>Gives a component that was just added the JSON and the motions that lie beside its model.</summary>
+    /// <summary>Gives a component that was just added the export that lies beside its model.</summary>
     [InitializeOnLoad]
     public static class ExportFinder
     {
@@ -13,11 +13,11 @@ namespace Metagraph
             ObjectFactory.componentWasAdded += Fill;
         }
 
-        /// <summary>Set what a character lacks, where the files beside its model are called like the model.</summary>
+        /// <summary>Set the export of a character that has none, if it is called as the model is.</summary>
         public static void Fill(Component added)
         {
             var character = added as MetagraphCharacter;
-            if (character == null || character.export != null || character.glb != null)
+            if (character == null || character.asset != null || character.export != null || character.glb != null)
             {
                 return;
             }
@@ -26,8 +26,7 @@ namespace Metagraph
             {
                 return;
             }
-            character.export = AssetDatabase.LoadAssetAtPath<TextAsset>(Path.ChangeExtension(model, ".json"));
-            character.glb = AssetDatabase.LoadAssetAtPath<TextAsset>(model + ".bytes");
+            character.asset = AssetDatabase.LoadAssetAtPath<MetagraphExport>(Path.ChangeExtension(model, ".metagraph"));
         }
     }
 }

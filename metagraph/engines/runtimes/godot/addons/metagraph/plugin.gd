@@ -29,12 +29,12 @@ class Motions:
 			skip()  # it is there already
 
 	func _add_from(folder: String) -> void:
-		for name in DirAccess.get_files_at(folder):
-			var path := folder.path_join(name)
+		for file: String in DirAccess.get_files_at(folder):
+			var path: String = folder.path_join(file)
 			if path.get_extension() == "motion":
 				for each: String in [path, path.get_basename() + ".json"]:
 					if FileAccess.file_exists(each):
 						add_file(each, FileAccess.get_file_as_bytes(each), false)
-		for name in DirAccess.get_directories_at(folder):
-			if not name.begins_with("."):
-				_add_from(folder.path_join(name))
+		for inside: String in DirAccess.get_directories_at(folder):
+			if not inside.begins_with("."):
+				_add_from(folder.path_join(inside))

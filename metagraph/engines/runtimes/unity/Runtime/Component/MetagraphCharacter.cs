@@ -7,10 +7,7 @@ using UnityEngine.Events;
 
 namespace Metagraph
 {
-    /// <summary>
-    /// Performs a Metagraph export on the joints below this object, which are found by name. glTF is right-handed, Unity left-handed:
-    /// both glTFast and UnityGLTF mirror the X axis when they import, so that is what is done to poses, too.
-    /// </summary>
+    /// <summary>Performs a Metagraph export on the joints below this object, which are found by name, or on its humanoid avatar.</summary>
     [DisallowMultipleComponent]
     [AddComponentMenu("Metagraph/Metagraph Character")]
     public sealed class MetagraphCharacter : MonoBehaviour
@@ -19,12 +16,16 @@ namespace Metagraph
         [Serializable]
         public sealed class ActionEvent : UnityEvent<string, string, string> { }
 
-        [Tooltip("The exported JSON")]
+        [Tooltip("The imported file .metagraph")]
+        public MetagraphExport asset;
+        [Tooltip("Without an asset: the exported JSON")]
         public TextAsset export;
         [Tooltip("The export's file .glb.bytes")]
         public TextAsset glb;
         [Tooltip("Or its path below StreamingAssets (not on Android and the web, where these are no files)")]
         public string glbPath = "";
+        [Tooltip("How poses reach the figure. Automatic: an animation job where there is an Animator, else transforms")]
+        public PoseOutput output = PoseOutput.Automatic;
         [Tooltip("-1: the project's")]
         public long seed = -1;
         [Tooltip("Whether it performs when nobody asks for anything")]
@@ -48,7 +49,7 @@ namespace Metagraph
         private readonly List<Shape> shapes = new List<Shape>();
         private Character character;
         private Talk talk;
-        private Transform[] joints;
+        private IPoseWriter writer;
         private double time;
 
         /// <summary>The character that performs; null where its export could not be loaded.</summary>
@@ -61,27 +62,45 @@ namespace Metagraph
         {
             try
             {
-                if (export == null || (glb == null && string.IsNullOrEmpty(glbPath)))
+                if (asset == null && (export == null || (glb == null && string.IsNullOrEmpty(glbPath))))
                 {
-                    throw new MetagraphException(name, "has no export", "Set Export and Glb, or Glb Path, in the inspector.");
+                    throw new MetagraphException(name, "has no export", "Set Asset to the imported file .metagraph in the inspector.");
                 }
-                Graph graph = SharedGraphs.Of(export, glb != null ? (object)glb : glbPath, Load);
+                Graph graph = SharedGraphs.Of(
+                    asset != null ? (object)asset : export, asset != null ? (object)asset : glb != null ? (object)glb : glbPath, Load);
                 character = new Character(graph, new CharacterOptions { Seed = seed < 0 ? (uint?)null : (uint)seed, Idle = idle });
                 talk = new Talk(character, language, null, seed < 0 ? 1u : (uint)seed, "said#");
-                Bind(graph);
+                writer = Bind(graph);
             }
             catch (Exception error) when (error is MetagraphException || error is IOException || error is UnauthorizedAccessException)
             {
                 Debug.LogError(error.Message, this);
+                character = null;
                 enabled = false;
+            }
+        }
+
+        private void OnDestroy()
+        {
+            if (writer != null)
+            {
+                writer.Dispose();
             }
         }
 
         /// <summary>Read the export, for this and all other characters of the same assets.</summary>
         private Graph Load()
         {
+            if (asset != null)
+            {
+                return Report(asset.Read());
+            }
             byte[] bytes = glb != null ? glb.bytes : File.ReadAllBytes(Path.Combine(Application.streamingAssetsPath, glbPath));
-            Graph graph = Graph.Load(export.text, bytes, export.name);
+            return Report(Graph.Load(export.text, bytes, export.name));
+        }
+
+        private Graph Report(Graph graph)
+        {
             graph.Problems.ForEach(problem => Debug.LogWarning(problem, this));
             return graph;
         }
@@ -93,8 +112,26 @@ namespace Metagraph
             SharedGraphs.Clear();
         }
 
-        /// <summary>Find joints and blend shapes by their names.</summary>
-        private void Bind(Graph graph)
+        /// <summary>Find blend shapes by their names, and how poses are shown.</summary>
+        private IPoseWriter Bind(Graph graph)
+        {
+            BindShapes(graph);
+            var animator = GetComponent<Animator>();
+            if (output == PoseOutput.Humanoid)
+            {
+                return new HumanoidWriter(graph, asset != null ? asset.humanoid : "", animator);
+            }
+            Transform[] joints = FindJoints(graph);
+            bool job = output == PoseOutput.AnimationJob || (output == PoseOutput.Automatic && animator != null);
+            if (job && animator == null)
+            {
+                throw new MetagraphException(name, "has no Animator", "Add one, or choose another Output.");
+            }
+            return job ? (IPoseWriter)new PlayableWriter(animator, joints) : new TransformWriter(joints);
+        }
+
+        /// <summary>Return the objects below that are called as joints; null for those that are not there.</summary>
+        private Transform[] FindJoints(Graph graph)
         {
             var found = new Dictionary<string, Transform>();
             foreach (Transform one in GetComponentsInChildren<Transform>(true))
@@ -104,7 +141,7 @@ namespace Metagraph
                     found[one.name] = one;
                 }
             }
-            joints = new Transform[graph.Joints.Length];
+            var joints = new Transform[graph.Joints.Length];
             var lost = new List<string>();
             for (int j = 0; j < joints.Length; j++)
             {
@@ -118,6 +155,11 @@ namespace Metagraph
                 string names = string.Join(", ", lost.ToArray());
                 Debug.LogWarning("no object below is called " + names + "; these joints stay as they are", this);
             }
+            return joints;
+        }
+
+        private void BindShapes(Graph graph)
+        {
             foreach (SkinnedMeshRenderer renderer in GetComponentsInChildren<SkinnedMeshRenderer>(true))
             {
                 Mesh mesh = renderer.sharedMesh;
@@ -133,8 +175,8 @@ namespace Metagraph
             }
         }
 
-        /// <summary>After animators, so that this has the last word.</summary>
-        private void LateUpdate()
+        /// <summary>Before animators are evaluated: plan, and give an animation job its pose.</summary>
+        private void Update()
         {
             if (character == null)
             {
@@ -142,15 +184,23 @@ namespace Metagraph
             }
             time += Time.deltaTime;
             character.Update(time);
-            BodyPose pose = character.Pose(alive);
-            float[] q = pose.Rotations, t = pose.Translations;
-            for (int j = 0; j < joints.Length; j++)
+            if (writer.Early)
             {
-                if (joints[j] != null)
-                {
-                    joints[j].localRotation = new Quaternion(q[4 * j], -q[4 * j + 1], -q[4 * j + 2], q[4 * j + 3]);
-                    joints[j].localPosition = new Vector3(-t[3 * j], t[3 * j + 1], t[3 * j + 2]);
-                }
+                writer.Write(character.Pose(alive));
+            }
+        }
+
+        /// <summary>After animators: set transforms, where no job does, and blend shapes; then tell what began and ended.</summary>
+        private void LateUpdate()
+        {
+            if (character == null)
+            {
+                return;
+            }
+            BodyPose pose = character.Pose(alive);
+            if (!writer.Early)
+            {
+                writer.Write(pose);
             }
             for (int n = 0; n < shapes.Count; n++)
             {
@@ -194,8 +244,14 @@ namespace Metagraph
             return Ask("{\"do\":\"gesture\",\"tags\":[" + string.Join(",", Array.ConvertAll(tags ?? new string[0], Json.Quote)) + "]}");
         }
 
-        /// <summary>Go to a stance, by id or name; stay: the models do not leave it of their own accord.</summary>
+        /// <summary>Go to a stance, by id or name.</summary>
         public string Go(string stance, bool stay = false)
+        {
+            return Stance(stance, stay);
+        }
+
+        /// <summary>Go to a stance, by id or name; stay: the models do not leave it of their own accord.</summary>
+        public string Stance(string stance, bool stay = false)
         {
             return Ask("{\"do\":\"stance\",\"stance\":" + Json.Quote(stance) + ",\"stay\":" + (stay ? "true" : "false") + "}");
         }

@@ -577,20 +577,20 @@ namespace Metagraph
         /// <summary>
         /// Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the plan before.
         /// </summary>
-        private static Heard Steer(List<MetaRequest> requests, Heard heard, Meaning meant, double now, double soon)
+        private static Heard Steer(List<MetaRequest> requests, Heard told, Meaning meant, double now, double soon)
         {
             if (meant.Steered.Count == 0)
             {
-                return heard;
+                return told;
             }
             var steered = new SteeredSpeech(
-                heard.Track,
-                new HashSet<string>(heard.Withdrawn),
-                new HashSet<string>(heard.Stopped),
-                new HashSet<string>(heard.Touched)
+                told.Track,
+                new HashSet<string>(told.Withdrawn),
+                new HashSet<string>(told.Stopped),
+                new HashSet<string>(told.Touched)
             );
-            steered.Requests = requests.Where(r => !heard.Withdrawn.Contains(r.Id)).ToList();
-            foreach (MetaRequest request in heard.Fresh)
+            steered.Requests = requests.Where(r => !told.Withdrawn.Contains(r.Id)).ToList();
+            foreach (MetaRequest request in told.Fresh)
             {
                 steered.Requests.Add(request);
                 steered.Anew.Add(request.Id);

@@ -368,12 +368,12 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of the original
+        /// Return how far a joint turns away from its stance, a factor, for that of a cue. real: the real part of the original
         /// rotation, a unit quaternion. Rotations of nearly half a circle, whose short way changes sides, stay as they are.
         /// </summary>
-        public static double TurnExtent(double extent, double real)
+        public static double TurnExtent(double factor, double real)
         {
-            return 1 + (extent - 1) * Faded((Math.Abs(real) - 0.1) / 0.4);
+            return 1 + (factor - 1) * Faded((Math.Abs(real) - 0.1) / 0.4);
         }
 
         /// <summary>Return whether an action was made for a mood: whether it has the tag of a mood that is near.</summary>

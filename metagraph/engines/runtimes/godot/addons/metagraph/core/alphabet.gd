@@ -13,19 +13,19 @@ var _runs = {}
 
 func _init(engine_shim):
 	shim = engine_shim
-	for plain in Table.PLAIN:
-		var letters = Table.PLAIN[plain]
-		for n in range(letters.length()):
-			_plain[letters[n]] = plain
+	for base in Table.PLAIN:
+		var accented = Table.PLAIN[base]
+		for n in range(accented.length()):
+			_plain[accented[n]] = base
 	for n in range(0, Table.PAIRS.length(), 2):
 		_plain[Table.PAIRS[n]] = Table.PAIRS[n + 1]
-	for kind in [["letter", Table.LETTERS], ["digit", Table.DIGITS], ["syllable", Table.SYLLABLES], ["mark", Table.MARKS]]:
+	for sort in [["letter", Table.LETTERS], ["digit", Table.DIGITS], ["syllable", Table.SYLLABLES], ["mark", Table.MARKS]]:
 		var edges = []
 		var at = 0
-		for number in kind[1].split(" ", false):
+		for number in sort[1].split(" ", false):
 			at += int(number)
 			edges.append(at)
-		_runs[kind[0]] = edges
+		_runs[sort[0]] = edges
 
 
 # Returns a text without blanks at its ends.

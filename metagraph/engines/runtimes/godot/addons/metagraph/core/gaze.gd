@@ -105,14 +105,14 @@ func _aim(place):
 # Returns [where a target is, its direction from where the eyes are at rest, whether it is nowhere, which is ahead].
 func _seen(target):
 	var rig = _graph.rig
-	var at = rig.partner
+	var there = rig.partner
 	if typeof(target.to) != TYPE_STRING:
-		at = Util.vector(target.to)
+		there = Util.vector(target.to)
 	elif target.to != Wanted.AHEAD and _graph.points.has(target.to):
-		at = _graph.points[target.to]
+		there = _graph.points[target.to]
 	elif target.to != Wanted.PARTNER:
 		return [rig.partner, rig.ahead, true]
-	return [at, at - rig.eyes_at_rest, false]
+	return [there, there - rig.eyes_at_rest, false]
 
 
 # Returns the angle between two directions, degrees.

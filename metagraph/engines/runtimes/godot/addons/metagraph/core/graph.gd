@@ -73,10 +73,10 @@ func _read(json, bytes):
 	var wrong = Check.wrong(data)
 	if wrong != "":
 		return wrong + "; export it again"
-	for name in PLANNER_USUAL:
-		settings[name] = float(data.planner.get(name, PLANNER_USUAL[name]))
-	for name in Check.PLANNER:
-		settings[name] = data.planner[name]
+	for field in PLANNER_USUAL:
+		settings[field] = float(data.planner.get(field, PLANNER_USUAL[field]))
+	for field in Check.PLANNER:
+		settings[field] = data.planner[field]
 	settings.seed32 = int(data.planner["seed"])
 	_read_skeleton(data)
 	life = Life.life_of(data.life)
@@ -84,8 +84,8 @@ func _read(json, bytes):
 	lines = data.lines
 	parameters = data.parameters
 	spots = data.points
-	for name in data.points:
-		points[name] = Util.vector(data.points[name])
+	for point in data.points:
+		points[point] = Util.vector(data.points[point])
 	for line in data.voices:
 		voices[line] = data.voices[line]
 	for layer in Util.LAYERS:

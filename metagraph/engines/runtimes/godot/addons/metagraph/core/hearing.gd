@@ -372,21 +372,16 @@ static func find_asked(track, last, continues, ident, soon):
 
 
 # Return the effect of asks that interrupt, pause, resume or finish speech, in order. requests: of the plan before.
-static func _steer(requests, heard, meant, now, soon):
+static func _steer(requests, told, meant, now, soon):
 	if meant.steered.size() == 0:
-		return heard
-	var steered = SteeredSpeech.new(
-		heard.track,
-		Util.set_of(heard.withdrawn),
-		Util.set_of(heard.stopped),
-		Util.set_of(heard.touched)
-	)
+		return told
+	var steered = SteeredSpeech.new(told.track, Util.set_of(told.withdrawn), Util.set_of(told.stopped), Util.set_of(told.touched))
 	var found = []
 	for r in requests:
-		if not heard.withdrawn.has(r.id):
+		if not told.withdrawn.has(r.id):
 			found.append(r)
 	steered.requests = found
-	for request in heard.fresh:
+	for request in told.fresh:
 		steered.requests.append(request)
 		Util.add_to(steered.anew, request.id)
 	for ask in meant.steered:

@@ -289,10 +289,10 @@ static func drag(seconds, speed):
 	return seconds * ((float(1) / speed) - 1)
 
 
-# Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of the original rotation, a
+# Return how far a joint turns away from its stance, a factor, for that of a cue. real: the real part of the original rotation, a
 # unit quaternion. Rotations of nearly half a circle, whose short way changes sides, stay as they are.
-static func turn_extent(extent, real):
-	return 1 + (extent - 1) * faded((Util.absolute(real) - 0.1) / 0.4)
+static func turn_extent(factor, real):
+	return 1 + (factor - 1) * faded((Util.absolute(real) - 0.1) / 0.4)
 
 
 # Return whether an action was made for a mood: whether it has the tag of a mood that is near.

@@ -175,9 +175,9 @@ static func words(text):
 
 
 # Returns [a text before the last of another, that, what is behind it]; nothing of the first two where it has none.
-static func parted_last(text, by):
-	var place = text.rfind(by)
-	return ["", "", text] if place < 0 else [text.substr(0, place), by, text.substr(place + by.length())]
+static func parted_last(text, between):
+	var place = text.rfind(between)
+	return ["", "", text] if place < 0 else [text.substr(0, place), between, text.substr(place + between.length())]
 
 
 # Returns whether a text is digits alone.

@@ -108,16 +108,16 @@ static func _drive(graph, playing, time):
 		return []
 	var rig = graph.weight_rig
 	var at = knots(time)
-	var sways = []
+	var driven = []
 	for n in range(at.size()):
 		var arms = playing[n][0]
 		var body = playing[n][1]
-		sways.append(
+		driven.append(
 			FollowThrough.arm_sway(
 				graph, graph.arm_tracks, rig.body.hands, arms[0], arms[1], arms[2], body[0], body[1], body[2], at[n]
 			)
 		)
-	return FollowThrough.driven(sways, time)
+	return FollowThrough.driven(driven, time)
 
 
 # Whether the bodies of a graph answer their arms.

@@ -1,9 +1,7 @@
 #include "AnimNode_Metagraph.h"
 
-#include "Animation/AnimInstance.h"
 #include "Animation/AnimInstanceProxy.h"
 #include "BoneContainer.h"
-#include "GameFramework/Actor.h"
 
 void FAnimNode_Metagraph::Initialize_AnyThread(const FAnimationInitializeContext& Context)
 {
@@ -14,18 +12,12 @@ void FAnimNode_Metagraph::Initialize_AnyThread(const FAnimationInitializeContext
 void FAnimNode_Metagraph::CacheBones_AnyThread(const FAnimationCacheBonesContext& Context)
 {
 	BasePose.CacheBones(Context);
-	Places.Reset();
-	if (Pose.IsValid())
-	{
-		Find(Context.AnimInstanceProxy->GetRequiredBones());
-	}
+	Shown.Find(Context.AnimInstanceProxy->GetRequiredBones());
 }
 
 void FAnimNode_Metagraph::PreUpdate(const UAnimInstance* InAnimInstance)
 {
-	const AActor* Owner = InAnimInstance ? InAnimInstance->GetOwningActor() : nullptr;
-	const UMetagraphComponent* Component = Owner ? Owner->FindComponentByClass<UMetagraphComponent>() : nullptr;
-	Take(Component ? Component->Pose() : nullptr);
+	Shown.TakeFrom(InAnimInstance);
 }
 
 void FAnimNode_Metagraph::Update_AnyThread(const FAnimationUpdateContext& Context)
@@ -34,48 +26,10 @@ void FAnimNode_Metagraph::Update_AnyThread(const FAnimationUpdateContext& Contex
 	BasePose.Update(Context);
 }
 
-/** Find where in the compact pose the export's bones are. */
-void FAnimNode_Metagraph::Find(const FBoneContainer& Required)
-{
-	for (const FName& Bone : Pose->Bones)
-	{
-		const int32 Place = Required.GetPoseBoneIndexForBoneName(Bone);
-		const FCompactPoseBoneIndex Compact
-			= Place == INDEX_NONE ? FCompactPoseBoneIndex(INDEX_NONE) : Required.MakeCompactPoseIndex(FMeshPoseBoneIndex(Place));
-		Places.Add(Bone, Compact.GetInt());
-	}
-}
-
 void FAnimNode_Metagraph::Evaluate_AnyThread(FPoseContext& Output)
 {
 	BasePose.Evaluate(Output);
-	if (!Pose.IsValid() || Alpha <= 0.0f)
-	{
-		return;
-	}
-	if (Places.Num() == 0)
-	{
-		Find(Output.Pose.GetBoneContainer());
-	}
-	for (int32 N = 0; N < Pose->Bones.Num(); N++)
-	{
-		const int32* Place = Places.Find(Pose->Bones[N]);
-		if (Place == nullptr || *Place == INDEX_NONE)
-		{
-			continue; // the mesh does not have it, or not at this level of detail
-		}
-		FTransform& Bone = Output.Pose[FCompactPoseBoneIndex(*Place)];
-		FTransform Wanted = Pose->Transforms[N];
-		Wanted.SetScale3D(Bone.GetScale3D());
-		if (Alpha >= 1.0f)
-		{
-			Bone = Wanted;
-		}
-		else
-		{
-			Bone.BlendWith(Wanted, Alpha);
-		}
-	}
+	Shown.Apply(Output, Alpha, bBones, bCurves);
 }
 
 void FAnimNode_Metagraph::GatherDebugData(FNodeDebugData& DebugData)

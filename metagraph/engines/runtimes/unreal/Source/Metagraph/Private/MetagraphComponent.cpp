@@ -2,6 +2,7 @@
 
 #include "Components/SkeletalMeshComponent.h"
 #include "GameFramework/Actor.h"
+#include "MetagraphAnimInstance.h"
 #include "MetagraphAsset.h"
 #include "MetagraphPoses.h"
 
@@ -29,6 +30,10 @@ void UMetagraphComponent::BeginPlay()
 	if (Mesh)
 	{
 		Mesh->AddTickPrerequisiteComponent(this); // so that the pose is this frame's
+		if (bDriveMesh && Mesh->GetAnimClass() == nullptr)
+		{
+			Mesh->SetAnimInstanceClass(UMetagraphAnimInstance::StaticClass());
+		}
 	}
 	Advance(0.0f);
 }
@@ -62,6 +67,7 @@ bool UMetagraphComponent::Begin()
 	Words.name = "said#";
 	Character = MakeShared<FMetagraphCharacter>(Graph->Graph, Options, Words);
 	Bones = MetagraphPoses::Bones(*Graph->Graph);
+	Curves = MetagraphPoses::Curves(*Graph->Graph);
 	return true;
 }
 
@@ -81,15 +87,10 @@ void UMetagraphComponent::Advance(float Seconds)
 void UMetagraphComponent::Show()
 {
 	metagraph::Character& Own = Character->Character;
-	Latest = MetagraphPoses::Made(Bones, Own.pose(bAlive));
-	if (!Mesh)
+	Latest = MetagraphPoses::Made(Bones, Own.pose(bAlive), Curves, Own.morphs(bAlive));
+	for (int32 N = 0; Mesh && bMorphTargets && N < Curves.Num(); N++)
 	{
-		return;
-	}
-	const metagraph::List<double>& Weights = Own.morphs(bAlive);
-	for (std::size_t N = 0; N < Weights.size(); N++)
-	{
-		Mesh->SetMorphTarget(FName(*MetagraphText::Unreal(Own.graph().morphs[N])), static_cast<float>(Weights[N]), false);
+		Mesh->SetMorphTarget(Curves[N], Latest->Weights[N], false);
 	}
 }
 

@@ -2,7 +2,7 @@
 
 #include "CoreMinimal.h"
 #include "Animation/AnimNodeBase.h"
-#include "MetagraphComponent.h"
+#include "MetagraphShown.h"
 #include "AnimNode_Metagraph.generated.h"
 
 /** Shows the pose of the actor's Metagraph component. Bones the export does not have stay as the input has them. */
@@ -18,6 +18,14 @@ struct METAGRAPH_API FAnimNode_Metagraph : public FAnimNode_Base
 	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = Settings, meta = (PinShownByDefault, ClampMin = "0", ClampMax = "1"))
 	float Alpha = 1.0f;
 
+	/** Whether bones move. Off for a face whose bones another rig moves, as a MetaHuman's. */
+	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = Settings)
+	bool bBones = true;
+
+	/** Whether morph targets become animation curves of their names, which are ARKit's if the export's are. */
+	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = Settings)
+	bool bCurves = true;
+
 	virtual void Initialize_AnyThread(const FAnimationInitializeContext& Context) override;
 	virtual void CacheBones_AnyThread(const FAnimationCacheBonesContext& Context) override;
 	virtual void Update_AnyThread(const FAnimationUpdateContext& Context) override;
@@ -29,11 +37,8 @@ struct METAGRAPH_API FAnimNode_Metagraph : public FAnimNode_Base
 	virtual void PreUpdate(const UAnimInstance* InAnimInstance) override;
 
 	/** Take a pose to be shown; what PreUpdate does. */
-	void Take(TSharedPtr<const FMetagraphPose, ESPMode::ThreadSafe> InPose) { Pose = InPose; }
+	void Take(TSharedPtr<const FMetagraphPose, ESPMode::ThreadSafe> InPose) { Shown.Take(InPose); }
 
 private:
-	TSharedPtr<const FMetagraphPose, ESPMode::ThreadSafe> Pose;
-	TMap<FName, int32> Places; // of bones in the compact pose
-
-	void Find(const FBoneContainer& Required);
+	FMetagraphShown Shown;
 };

@@ -14,6 +14,9 @@ struct METAGRAPH_API FMetagraphPose
 {
 	TArray<FName> Bones;
 	TArray<FTransform> Transforms;
+	/** Morph targets, and how much each shows, 0 to 1. */
+	TArray<FName> Curves;
+	TArray<float> Weights;
 };
 
 /** What becomes of a request. */
@@ -72,6 +75,14 @@ public:
 	/** Whether it breathes, looks, blinks and moves its lips. */
 	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = "Metagraph")
 	bool bAlive = true;
+
+	/** Whether a mesh without an Anim Class gets UMetagraphAnimInstance, so that no animation blueprint is needed. */
+	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = "Metagraph")
+	bool bDriveMesh = true;
+
+	/** Whether morph targets of the mesh are set, too, beside the animation curves of their names. */
+	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = "Metagraph")
+	bool bMorphTargets = true;
 
 	/** Whether gestures go with the words it says. */
 	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = "Metagraph")
@@ -199,6 +210,7 @@ private:
 	TSharedPtr<FMetagraphCharacter> Character;
 	TSharedPtr<const FMetagraphPose, ESPMode::ThreadSafe> Latest;
 	TArray<FName> Bones;
+	TArray<FName> Curves;
 
 	UPROPERTY(Transient)
 	TObjectPtr<USkeletalMeshComponent> Mesh;

@@ -1,14 +1,14 @@
 extends Node
-# Plays a Metagraph export on a Godot 3 Skeleton: the small counterpart of metagraph_character.gd, which is for Godot 4.
+# Plays a Metagraph export on a Godot 3 Skeleton: the small counterpart of the node for Godot 4.
 
 signal began(action, layer, meta)
 signal ended(action, layer, meta)
 
-const Graph = preload("../core/graph.gd")
-const Performer = preload("../core/character.gd")
-const Talk = preload("../core/talk.gd")
-const Bones = preload("../core/bones.gd")
-const Shim = preload("../core/shim3.gd")
+const Graph = preload("core/graph.gd")
+const Performer = preload("core/character.gd")
+const Talk = preload("core/talk.gd")
+const Bones = preload("core/bones.gd")
+const Shim = preload("core/shim3.gd")
 
 export(String, FILE, "*.json") var json_path = ""
 export(String, FILE) var glb_path = ""
