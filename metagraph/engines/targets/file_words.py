@@ -12,6 +12,10 @@ SHARED: Mapping[str, str] = {
     "{stem}.glb": "the character, and its clips as animations",
     "lines/": "the sounds of lines",
     "requests.md": "all requests and their fields",
+    "{stem}.parameters.js": "a class of the parameters that a game sets",
+    "{stem}.parameters.d.ts": "its types for TypeScript",
+    "{stem}_parameters.gd": "a class of the parameters that a game sets, with their types",
+    "{stem}_parameters.hpp": "a class of the parameters that a game sets, with their types",
 }
 FILES: Mapping[str, Mapping[str, str]] = {
     "web": {
@@ -46,6 +50,7 @@ FILES: Mapping[str, Mapping[str, str]] = {
     },
     "unity": {
         "{stem}.metagraph": "the clips; the package makes the character of it",
+        "*Character.cs": "a class of the parameters that a game sets, with their types",
         "{stem}.humanoid.json": "the bones of a humanoid, for retargeting",
         "{stem}.glb": "the character's mesh, which Unity imports with glTFast or UnityGLTF",
         "Metagraph/": "the package; its README has all calls",
