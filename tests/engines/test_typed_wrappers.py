@@ -685,7 +685,15 @@ def test_a_reorganised_graph_changes_nothing_and_a_rename_does(project: Project,
     assert make_wrapper(rename_parameter(project, "energy", "vigour"), "stick", language) != before
 
 
-@pytest.mark.parametrize(("name", "called"), [("talk", "TalkCharacter"), ("my character", "MyCharacter")])
+@pytest.mark.parametrize(
+    ("name", "called"),
+    [
+        ("talk", "TalkCharacter"),
+        ("my character", "MyCharacter"),
+        ("Character", "ExportedCharacter"),
+        ("metagraph", "ExportedCharacter"),
+    ],
+)
 def test_the_class_is_called_after_the_project(project: Project, name: str, called: str) -> None:
     assert make_class_name(replace(project, name=name)) == called
     assert make_class_name(replace(project, name="話す")) == "ExportedCharacter"
@@ -739,7 +747,9 @@ def test_targets_write_the_class_only_for_projects_with_parameters(
     report = registry.write_for_target(typed, target, tmp_path / "typed")
     assert set(stems) <= {path.name for path in report.files}
     readme = next(p for p in report.files if p.name == "README.md" and p.parent == tmp_path / "typed")
-    assert all(name in readme.read_text(encoding="utf-8") for name in stems)
+    text = readme.read_text(encoding="utf-8")
+    assert all(name.replace("Toy", "*") in text for name in stems)
+    assert "a class of the parameters" in text
 
 
 def test_a_choice_keeps_its_name_whatever_it_stands_for(project: Project) -> None:

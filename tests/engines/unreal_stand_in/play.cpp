@@ -151,6 +151,15 @@ static int Play(UMetagraphAsset& asset) {
     std::cout << "asked";
     for (const FString& id : asked) std::cout << " " << FTCHARToUTF8(*component.Answer(id).State).Get();
     std::cout << "\n";
+    const FString set[] = {
+        component.SetParameterNumber(FString(u"energy"), 1.5f), component.SetParameterSwitch(FString(u"speaking"), true),
+        component.SetParameterChoice(FString(u"mood"), FString(u"happy")), component.SetParameterChoices(FString(u"gesture_with"), TArray<FString>({FString(u"positive")})),
+        component.SetParameterPoint(FString(u"partner"), FVector(1100, 200, 150)), component.PlayParameter(FString(u"blink")), component.PlayParameter(FString(u"mood")),
+    };
+    for (int frame = 0; frame < 10; frame++) component.TickComponent(0.02f, LEVELTICK_All, nullptr);
+    std::cout << "set";
+    for (const FString& id : set) std::cout << " " << FTCHARToUTF8(*component.Answer(id).State).Get();
+    std::cout << "\n";
     return 0;
 }
 
@@ -225,15 +234,15 @@ static int Parameters(UMetagraphAsset& asset) {
     UMetagraphComponent component;
     component.Owner = &actor;
     const auto word = [](const FString& text) { return std::string(FTCHARToUTF8(*text).Get()); };
-    std::cout << "before " << word(component.SetFlag(FString(u"x"), true)).empty() << word(component.Parameter(FString(u"energy"))).empty() << "\n";
+    std::cout << "before " << word(component.SetParameterSwitch(FString(u"x"), true)).empty() << word(component.Parameter(FString(u"energy"))).empty() << "\n";
     component.Asset = &asset;
     component.BeginPlay();
     const FString asked[] = {
-        component.SetText(FString(u"mood"), FString(u"happy")), component.SetNumber(FString(u"energy"), 0.5f),
-        component.Trigger(FString(u"nod")), component.SetPlace(FString(u"partner"), FVector(100, 200, 150)), component.SetFlag(FString(u"listening"), true),
-        component.SetTexts(FString(u"gesture_with"), TArray<FString>({FString(u"greeting")})),
-        component.SetTexts(FString(u"mood"), TArray<FString>({FString(u"happy")})), component.SetFlag(FString(u"mood"), true),
-        component.SetText(FString(u"nobody"), FString(u"x")),
+        component.SetParameterChoice(FString(u"mood"), FString(u"happy")), component.SetParameterNumber(FString(u"energy"), 0.5f),
+        component.PlayParameter(FString(u"nod")), component.SetParameterPoint(FString(u"partner"), FVector(100, 200, 150)), component.SetParameterSwitch(FString(u"listening"), true),
+        component.SetParameterChoices(FString(u"gesture_with"), TArray<FString>({FString(u"greeting")})),
+        component.SetParameterChoices(FString(u"mood"), TArray<FString>({FString(u"happy")})), component.SetParameterSwitch(FString(u"mood"), true),
+        component.SetParameterChoice(FString(u"nobody"), FString(u"x")),
     };
     component.TickComponent(0.02f, LEVELTICK_All, nullptr);
     std::cout << "set";
