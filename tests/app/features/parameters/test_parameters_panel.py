@@ -110,9 +110,9 @@ def test_controls_change_the_character_at_once_and_nothing_is_saved(toys, panel)
     toys.wait(lambda: directed(panel)[-1] == "place")
     QTest.mouseClick(panel.controls["blink"], Qt.MouseButton.LeftButton)
     toys.wait(lambda: directed(panel)[-1] == "blink")
+    plan = panel.performance.shown
     QTest.mouseClick(panel.controls["gesture"], Qt.MouseButton.LeftButton)
     toys.wait(lambda: directed(panel)[-1] == "gesture")
-    plan = panel.performance.shown
     toys.wait(lambda: panel.performance.shown is not plan)
     assert panel.document.project is project and panel.document.undo_stack.count() == steps
     assert not project.performances, "what is tried is not kept"
