@@ -7,7 +7,6 @@
 class UMetagraphAsset;
 class USkeletalMeshComponent;
 struct FMetagraphCharacter;
-struct FMetagraphValue;
 
 /** A pose as the animation node reads it, on any thread: bones by name, local, in Unreal's space. Never changed once made. */
 struct METAGRAPH_API FMetagraphPose
@@ -152,34 +151,38 @@ public:
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
 	FString Mode(const FString& Mode);
 
-	/** Set a parameter that the project declares: a number, which is kept within its range; */
-	UFUNCTION(BlueprintCallable, Category = "Metagraph")
-	FString SetParameterNumber(const FString& Parameter, float Value);
-
-	/** a switch; */
-	UFUNCTION(BlueprintCallable, Category = "Metagraph")
-	FString SetParameterSwitch(const FString& Parameter, bool bOn);
-
-	/** one of its choices; */
-	UFUNCTION(BlueprintCallable, Category = "Metagraph")
-	FString SetParameterChoice(const FString& Parameter, const FString& Choice);
-
-	/** some of its choices; */
-	UFUNCTION(BlueprintCallable, Category = "Metagraph")
-	FString SetParameterChoices(const FString& Parameter, const TArray<FString>& Choices);
-
-	/** a place in the world. */
-	UFUNCTION(BlueprintCallable, Category = "Metagraph")
-	FString SetParameterPoint(const FString& Parameter, FVector Place);
-
-	/** Play a parameter that is a trigger. */
-	UFUNCTION(BlueprintCallable, Category = "Metagraph")
-	FString PlayParameter(const FString& Parameter);
-
 	/** Break off all that is said, because the other speaks: the voice stops at its next sound, gestures go back, and the character
 	 *  looks at the other. What is said next begins at once. */
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
 	FString Interrupt();
+
+	/** Set a parameter that the project declares, a number. Returns the id of the request that this makes. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetNumber(const FString& Parameter, float Value);
+
+	/** Set a parameter that is true or false. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetFlag(const FString& Parameter, bool bValue);
+
+	/** Set a parameter to a text, or to one of its words. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetText(const FString& Parameter, const FString& Value);
+
+	/** Set a parameter to a list of texts. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetTexts(const FString& Parameter, const TArray<FString>& Values);
+
+	/** Set a parameter to a place in the world. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetPlace(const FString& Parameter, FVector Value);
+
+	/** Pull a parameter that is a trigger. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Trigger(const FString& Parameter);
+
+	/** The value of a parameter, as JSON: what it was set to, else its first one. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Parameter(const FString& Name) const;
 
 	/** Take a request back; all of them where no id is given. */
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
@@ -216,7 +219,6 @@ private:
 	TObjectPtr<USkeletalMeshComponent> Mesh;
 
 	bool Begin();
-	FString SetParameter(const FString& Parameter, const FMetagraphValue& Value);
 	FVector OwnSpace(FVector Place) const;
 	void Tell();
 	void Show();
