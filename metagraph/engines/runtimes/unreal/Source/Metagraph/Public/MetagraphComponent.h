@@ -7,7 +7,6 @@
 class UMetagraphAsset;
 class USkeletalMeshComponent;
 struct FMetagraphCharacter;
-struct FMetagraphValue;
 
 /** A pose as the animation node reads it, on any thread: bones by name, local, in Unreal's space. Never changed once made. */
 struct METAGRAPH_API FMetagraphPose
@@ -220,7 +219,6 @@ private:
 	TObjectPtr<USkeletalMeshComponent> Mesh;
 
 	bool Begin();
-	FString SetParameter(const FString& Parameter, const FMetagraphValue& Value);
 	FVector OwnSpace(FVector Place) const;
 	void Tell();
 	void Show();
