@@ -7,6 +7,7 @@
 class UMetagraphAsset;
 class USkeletalMeshComponent;
 struct FMetagraphCharacter;
+struct FMetagraphValue;
 
 /** A pose as the animation node reads it, on any thread: bones by name, local, in Unreal's space. Never changed once made. */
 struct METAGRAPH_API FMetagraphPose
@@ -219,6 +220,7 @@ private:
 	TObjectPtr<USkeletalMeshComponent> Mesh;
 
 	bool Begin();
+	FString SetParameter(const FString& Parameter, const FMetagraphValue& Value);
 	FVector OwnSpace(FVector Place) const;
 	void Tell();
 	void Show();
