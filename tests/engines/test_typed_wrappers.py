@@ -236,9 +236,9 @@ def test_typescript_knows_the_types(project: Project, tmp_path: Path) -> None:
     shutil.copytree(RUNTIMES / "javascript", tmp_path / "metagraph")
 
     def check(code: str) -> str:
-        (tmp_path / "game.ts").write_text(code)
+        (tmp_path / "game.mts").write_text(code)
         options = ("--noEmit", "--strict", "--target", "es2022", "--module", "nodenext")
-        command = ["node", str(TYPES), *options, "game.ts"]
+        command = ["node", str(TYPES), *options, "game.mts"]
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
         return done.stdout
 
