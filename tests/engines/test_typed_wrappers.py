@@ -410,6 +410,7 @@ int main(int, char** words) {
 """
 
 
+@pytest.mark.nightly
 @needs_compiler
 def test_cpp(project: Project, export: Path, wanted: Told, tmp_path: Path) -> None:
     (tmp_path / "metagraph").symlink_to(RUNTIMES / "cpp")
