@@ -59,7 +59,7 @@ MUTATIONS = [
     ("sampling.js", "hops ? `${meta.key}/${step.hop}` : meta.key", "meta.key", "the key of a hop"),
     (
         "steps.js",
-        "exact = found.some((a) => !again.includes(a.id)) ? found : every;",
+        "exact = found.length > 0 ? found : every;",
         "exact = every;",
         "the model's wishes, one after the other",
     ),
