@@ -26,7 +26,7 @@ SEED, AHEAD, RECENT = 5, 20.0, 5.0  # a short memory, so that much is forgotten 
 STEPS = (0.013, 0.047, 0.2, 0.111, 0.029)  # seconds between updates
 FRAMES = 500
 # more updates, quarters of a minute apart, after which it is asked for the first time again what happened
-UNHEARD = 220
+UNHEARD = 225
 SHOWN = range(49, FRAMES, 50)  # frames at which answers, poses and morph targets are compared
 
 ASKED: dict[int, list[Any]] = {
