@@ -253,7 +253,9 @@ class PreviewPanel(QWidget):
             rotations, positions = skeleton.globals(pose)
             if one.stand is not None:
                 rotations, positions = one.stand.placed(rotations, positions)
-            props += make_prop_actors(one, self.figures.props.meshes, (rotations, positions))
+            own = self.performance.is_documents(one)
+            now = self.performance.document.project.props if own else None
+            props += make_prop_actors(one, self.figures.props.meshes, (rotations, positions), now)
             if one is shown:
                 self._last = (figure, rotations, positions)
             morphs = figure.morph_weights(one.morphs(seconds)) if figure.morphs else None

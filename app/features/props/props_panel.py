@@ -23,8 +23,8 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.props.floor_plan import FloorPlan
+from app.features.props.placing import Placing
 from app.look.names import make_readable_name
-from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.figures import Figures
 from app.stage.session import StageSession
@@ -34,7 +34,7 @@ from metagraph.errors import FileError
 from metagraph.formats.project.paths import make_path_for_project
 from metagraph.formats.props.reader import ENDINGS
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.editing.props import add_prop, find_grip, remove_prop, set_prop
+from metagraph.graph.editing.props import add_prop, find_grip, remove_prop
 from metagraph.graph.model import Project
 from metagraph.graph.prop import LARGEST, Prop
 from metagraph.motion.character_mesh import CharacterMesh
@@ -59,10 +59,11 @@ class PropsPanel(QWidget):
     """Lists the project's props, and edits the chosen one."""
 
     def __init__(
-        self, document: Document, session: StageSession, figures: Figures, jobs: Jobs, parent: QWidget
+        self, session: StageSession, figures: Figures, jobs: Jobs, placing: Placing, parent: QWidget
     ) -> None:
         super().__init__(parent)
-        self.document, self.session, self.figures, self.jobs = document, session, figures, jobs
+        document = self.document = placing.document
+        self.session, self.figures, self.jobs, self.placing = session, figures, jobs, placing
         self.current = ""
         self._showing = False
         self.add_button = QPushButton(tr("Add a prop…"), self)
@@ -72,7 +73,8 @@ class PropsPanel(QWidget):
         self.list = QListWidget(self)
         self.list.setAccessibleName(tr("Props"))
         self.list.currentItemChanged.connect(lambda item, _: self._choose(item))
-        self.plan = FloorPlan(session, figures.props.meshes, self.change, self)
+        self.list.itemClicked.connect(self._choose)
+        self.plan = FloorPlan(session, figures.props.meshes, placing, self)
         self.plan.chosen.connect(self.choose)
         self.empty = QLabel(
             tr(
@@ -88,6 +90,7 @@ class PropsPanel(QWidget):
         document.loaded.connect(self.refresh)
         figures.props.changed.connect(self.refresh)
         session.look.changed.connect(self.plan.update)
+        placing.changed.connect(self._follow_choice)
         self.refresh()
 
     def _lay_out(self) -> None:
@@ -178,6 +181,7 @@ class PropsPanel(QWidget):
     def refresh(self) -> None:
         """Show the props as they are now."""
         props = self.document.project.props
+        self.current = self.placing.ident or self.current
         if self.current not in props:
             self.current = next(iter(props), "")
         self._showing = True
@@ -225,21 +229,14 @@ class PropsPanel(QWidget):
 
     def choose(self, ident: str) -> None:
         """Choose a prop by its id; "" chooses none other."""
-        if ident and ident != self.current:
-            self.current = ident
+        if ident:
+            self.placing.choose(ident)
+
+    def _follow_choice(self) -> None:
+        """Show the prop that was chosen, in the view perhaps; the last one if none is."""
+        if self.placing.ident and self.placing.ident != self.current:
+            self.current = self.placing.ident
             self.refresh()
-
-    def change(self, ident: str, prop: Prop, ends: bool) -> None:
-        """Change a prop. ends: whether what follows is another step."""
-        self._edit(tr("Move {name}", name=prop.name), ident, prop, f"prop {ident}")
-        if ends:
-            self.document.finish_merging()
-
-    def _edit(self, words: str, ident: str, prop: Prop, merge: str | None = None) -> None:
-        try:
-            self.document.edit(words, lambda project: set_prop(project, ident, prop), merge=merge)
-        except EditError as error:
-            self.document.failed.emit(tr_error(error))
 
     def _set_number(self, key: tuple[str, int], value: float) -> None:
         prop = self.prop
@@ -247,14 +244,14 @@ class PropsPanel(QWidget):
             return
         name, place = key
         if name == "scale":
-            self._edit(
+            self.placing.edit(
                 tr("Resize {name}", name=prop.name), self.current, msgspec.structs.replace(prop, scale=value)
             )
             return
         values = list(getattr(prop, name))
         values[place] = round(value, 4)
         changed = msgspec.structs.replace(prop, **{name: tuple(values)})
-        self._edit(tr("Move {name}", name=prop.name), self.current, changed)
+        self.placing.edit(tr("Move {name}", name=prop.name), self.current, changed)
 
     def _set_joint(self) -> None:
         prop, joint = self.prop, str(self.joint.currentData() or "")
@@ -265,7 +262,7 @@ class PropsPanel(QWidget):
             at, turn = find_grip(self.document.project, joint)
         changed = msgspec.structs.replace(prop, joint=joint, at=at, turn=turn)
         words = tr("Carry {name}", name=prop.name) if joint else tr("Put {name} down", name=prop.name)
-        self._edit(words, self.current, changed)
+        self.placing.edit(words, self.current, changed)
 
     def remove(self) -> None:
         """Remove the chosen prop."""
