@@ -102,7 +102,7 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
         contacts=not options.no_contacts,
     )
     line.finish()
-    if files and not result.loaded and not result.failures:
+    if files and not result.loaded and not result.failures and not result.chosen:
         place = ", ".join(str(p) for p in files)
         raise FileError(
             place,
@@ -117,7 +117,7 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
             print(f"note: {note}", file=sys.stderr)
     before = {(entry.path, entry.take) for entry in project.clips.values()}
     again = sum((file, take) in before for file, take, *_ in result.loaded)
-    if result.loaded:
+    if result.loaded or result.chosen:
         project = result.into(project)
     at = {(entry.path, entry.take): entry.id for entry in project.clips.values()}
     fresh = {clip.name: at[file, take] for file, take, _, clip in result.loaded}
@@ -129,7 +129,7 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
         print(f"one arm: {describe_one_sided(one)}", file=sys.stderr)
     if one_sided:
         print(f"note: metagraph label {path} --twins adds mirrored twins for the other arm", file=sys.stderr)
-    if result.loaded or placed or taken:
+    if result.loaded or result.chosen or placed or taken:
         output.save(project)
     data = {
         "project": str(path),

@@ -253,7 +253,8 @@ def _rehearse(options: Namespace, project: Project, path: Path) -> list[Problem]
     seen = rehearse(project, options.play, ProgressLine(options, "Playing it to find faults").tell)
     for problem in seen:
         command = name_showing_command(project, problem, path)
-        _tell("seen", [f"{problem.message}{f'  [{command}]' if command else ''}"])
+        helps = f"  [{command}]" if command else f". {problem.remedy}"  # nothing to look at: what would help
+        _tell("seen", [f"{problem.message}{helps}"])
     return seen
 
 

@@ -134,6 +134,8 @@ class Importing(QObject):
         count = len(result.loaded)
         if count:
             self.document.edit(tr("Import {clips}", clips=count_clips(count)), result.into)
+        elif result.chosen:
+            self.document.edit(tr("Choose character"), result.into)
         self.imported.emit(result, drop)
         if not result.strangers or self.retarget is None:
             self._tell_imported(result)
@@ -173,7 +175,7 @@ class Importing(QObject):
 
     def _tell_imported(self, result: Imported) -> None:
         """Report the result of an import."""
-        if not result.loaded and not result.apart and not result.failures:
+        if not result.loaded and not result.apart and not result.failures and not result.chosen:
             self.report.emit(
                 tr("Nothing was imported"),
                 [f"{tr('No clips were found there.')} {tr_phrase(describe_clip_files())}"],

@@ -295,6 +295,7 @@ _OF_ACTIONS: dict[str, Finding] = {
     "travels": _stay,
     "play-slide": _stay,
     "play-sway": _slower,
+    "play-skate": _slower,
     "play-jump": _slower,
     "play-fast": _slower,
     "clip-jump": _in_clip,

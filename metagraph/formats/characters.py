@@ -132,6 +132,14 @@ def find_character_among(
     return None, tuple(none)
 
 
+def find_fitting_character(name: str, folder: Path | None, skeleton: Skeleton) -> CharacterFile | None:
+    """Return what a project of a skeleton has to know of a file with a character that can be drawn on it, by
+    the names of its joints or fitted; None if it holds none.
+    """
+    found = _look(name, folder, skeleton)
+    return found if found is not None and found.why_not is None else None
+
+
 def _look(name: str, folder: Path | None, skeleton: Skeleton, same: float = 0.0) -> CharacterFile | None:
     """Look at a file that may hold a character; None if it holds no mesh on a skeleton, or names less than a
     share `same` of the joints.

@@ -61,6 +61,8 @@ def list_remedies(result: Imported) -> tuple[Remedy, ...]:
 def describe_imported(result: Imported) -> str:
     """Return what came in: "Imported 24 clips, 3 of them retargeted"."""
     count = len(result.loaded)
+    if result.chosen and result.character is not None:
+        return phrase("Drawn with {name} from now on", name=Path(result.character.path).name)
     if result.retargeted and count:
         again = result.retargeted
         return phrase("Imported {clips}, {again} of them retargeted", clips=_clips(count), again=again)

@@ -96,10 +96,11 @@ class Imported:
 
     `loaded` is what `add_clips` takes. `failures` say in words why files were left out. `notes` say what
     readers changed. `character` is the first of the files that also holds a character, for a project that
-    draws none yet; if there is none, `stand_ins` are the files whose mesh only stands in for one. `strangers`
-    are clips of other skeletons that wait to be retargeted. `joint_maps` are those by which clips were
-    retargeted, to be kept in the project, and `retargeted` is the number of these clips. `apart` are clips of
-    other skeletons that were left out, by the user or with a reason among the failures.
+    draws none yet; if there is none, `stand_ins` are the files whose mesh only stands in for one. `chosen`:
+    it was given by itself, so that it takes the place of the project's character. `strangers` are clips of
+    other skeletons that wait to be retargeted. `joint_maps` are those by which clips were retargeted, to be
+    kept in the project, and `retargeted` is the number of these clips. `apart` are clips of other skeletons
+    that were left out, by the user or with a reason among the failures.
     """
 
     loaded: tuple[Loaded, ...]
@@ -112,13 +113,14 @@ class Imported:
     joint_maps: Mapping[str, JointMap] = field(default_factory=dict)
     retargeted: int = 0
     apart: tuple[Strangers, ...] = ()
+    chosen: bool = False
 
     def into(self, project: Project) -> Project:
         """Edit `project`: add the clips and, if it has no character, the one that came with them."""
         project = add_clips(project, self.loaded)
         if any(project.joint_maps.get(key) != value for key, value in self.joint_maps.items()):
             project = replace(project, joint_maps={**project.joint_maps, **self.joint_maps})
-        if project.character is not None or self.character is None:
+        if self.character is None or (project.character is not None and not self.chosen):
             return project
         return self.character.into(project)
 
@@ -151,7 +153,8 @@ def import_files(
     ("yes"). `remembered` finds the user's maps from other projects. `contacts` says whether retargeted hands
     touch their own body where they did, for skeletons that the project has no joint map for yet.
     """
-    report = import_clips(gather(paths), progress, cancelled)
+    files = gather(paths)
+    report = import_clips(files, progress, cancelled)
     failures: list[str] = [error.words for error in report.failures]
     bodies = [clip for _, _, clip in report.clips if not is_face_take(clip)]
     skeleton = project.skeleton or _skeleton_of_most(bodies)
@@ -191,21 +194,28 @@ def import_files(
             loaded.append((name, take, content, put_on_body(add_clips(project, loaded), clip)))
         except RetargetError as error:
             failures.append(phrase("{file}: {why}", file=Path(name).name, why=describe_error(error)))
+    still = {_name(e.path, folder): e.words for e in report.failures}
+    alone = len(files) == 1 and not report.clips
     character: CharacterFile | None = None
     stand_ins: tuple[CharacterFile, ...] = ()
-    if project.character is None and skeleton is not None:
-        from metagraph.formats.characters import find_character_among
-
-        still = {_name(e.path, folder): e for e in report.failures}
-        character, stand_ins = find_character_among([name for name, *_ in loaded], still, folder, skeleton)
-        if character is not None and character.path in still:  # it is useful without a motion
-            failures.remove(still[character.path].words)
+    if skeleton is not None and (alone or project.character is None):
+        character, stand_ins = _find_character([name for name, *_ in loaded], still, folder, skeleton, alone)
+    if character is not None and character.path in still:  # it is useful without a motion
+        failures.remove(still[character.path])
     notes = (*_together(report.clips), *_together(lost), *_other_bones(list(apart.values())))
     if skeleton is not None and skeleton is not project.skeleton and is_mirrored(skeleton):
         notes = (*notes, _MIRRORED)
     if character is not None:
         notes = (*notes, *character.notes)
-    result = Imported(tuple(loaded), tuple(failures), notes, report.cancelled, character, stand_ins)
+    result = Imported(
+        tuple(loaded),
+        tuple(failures),
+        notes,
+        report.cancelled,
+        character,
+        stand_ins,
+        chosen=alone and character is not None,
+    )
     if foreign:
         bringing = Bringing(add_clips(project, loaded))
         for key, clips in foreign.items():
@@ -359,6 +369,20 @@ def _as_known(
             if take < len(takes[as_is]):
                 out[path, take] = takes[as_is][take]
     return [(path, take, clip) for (path, take), clip in out.items()]
+
+
+def _find_character(
+    clips: Sequence[str], still: Iterable[str], folder: Path | None, skeleton: Skeleton, alone: bool
+) -> tuple[CharacterFile | None, tuple[CharacterFile, ...]]:
+    """Return the character among the files of an import, and stand-ins if there is none. still: files without
+    motion. alone: whether a single such file was given, which may then have other joints.
+    """
+    from metagraph.formats.characters import find_character_among, find_fitting_character
+
+    character, stand_ins = find_character_among(clips, still, folder, skeleton)
+    if character is None and alone:
+        character = find_fitting_character(next(iter(still), ""), folder, skeleton)
+    return character, () if character is not None else stand_ins
 
 
 def _together(clips: Iterable[tuple[Path, int, Clip]]) -> tuple[str, ...]:

@@ -34,18 +34,25 @@ class Manner(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unkno
     blinks: Factor = 1.0
 
 
-# Who talks looks away for some 2 s in each 5 s (Andrist et al. 2013); who listens looks at the other three
-# quarters of the time (Argyle and Cook). Idle, ours: nobody speaks, so the gaze wanders longer and farther,
+# Who talks looks away for some 2 s at a time (Andrist et al. 2013), and at the other for 41 % of the time;
+# who listens for three quarters of it (Argyle and Ingham). Where turns end with a look at the other, less is
+# left for looks away: measured from poses in conversations, speakers look at the other for half of the time
+# (`tests/benchmarks/bench_gaze.py`). Idle, ours: nobody speaks, so the gaze wanders longer and farther,
 # and away half of the time. In conversation people blink 26 times a minute, at rest 17. Somebody who thinks
 # before an answer looks away for 3.5 s, from 1.3 s before the first word (Andrist et al.), and is still.
 # Somebody who reacts looks at the other; these numbers are ours.
 MANNERS: Mapping[Mode, Manner] = MappingProxyType({
     "idle": Manner(aversion_rate=1.1, aversion_length=2.4, aversion_angle=1.4, saccade_rate=0.85),
     "listening": Manner(
-        aversion_rate=0.85, aversion_length=1.5, aversion_angle=0.8, saccades=0.9, blinks=1.45
+        aversion_rate=1.0, aversion_length=1.5, aversion_angle=1.1, saccades=0.9, blinks=1.45
     ),
     "talking": Manner(
-        breathing=1.15, breath_rate=1.1, aversion_rate=1.05, aversion_length=2.1, blinks=0.65
+        breathing=1.15,
+        breath_rate=1.1,
+        aversion_rate=1.35,
+        aversion_length=2.3,
+        aversion_angle=1.3,
+        blinks=0.65,
     ),
     "thinking": Manner(
         breathing=0.8,

@@ -197,7 +197,8 @@ def measure_usual_moves(project: Project, joints: list[int]) -> tuple[Array, Arr
 
 def find_blending(project: Project, plan: Plan, times: Array) -> Array:
     """Return `[N]` whether two poses blend on any layer at `times [N]`: in blends, fades and seams."""
-    return _within([*_blends(plan), *_seams(project, plan)], times)
+    blends = [span for of in plan.layers.values() for span in find_blends(of)]
+    return _within([*blends, *_seams(project, plan)], times)
 
 
 def _within(spans: Iterable[tuple[float, float]], times: Array) -> Array:
@@ -209,13 +210,11 @@ def _within(spans: Iterable[tuple[float, float]], times: Array) -> Array:
     return out
 
 
-def _blends(plan: Plan) -> Iterator[tuple[float, float]]:
-    for of in plan.layers.values():
-        for cue in of.cues:
-            yield cue.start, cue.start + cue.blend_in
-            yield cue.end - cue.blend_out, cue.end
-        for rest in of.rests[1:]:
-            yield rest.fade_start, rest.fade_start + rest.fade
+def find_blends(of: LayerPlan) -> list[tuple[float, float]]:
+    """Return when cues of a layer blend in and out, and when one loop fades into another, seconds."""
+    out = [(cue.start, cue.start + cue.blend_in) for cue in of.cues]
+    out += [(cue.end - cue.blend_out, cue.end) for cue in of.cues]
+    return out + [(rest.fade_start, rest.fade_start + rest.fade) for rest in of.rests[1:]]
 
 
 def _seams(project: Project, plan: Plan) -> Iterator[tuple[float, float]]:

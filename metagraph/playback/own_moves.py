@@ -18,6 +18,8 @@ from metagraph.playback.posing.composer import find_playable_motion
 Array = NDArray[Any]
 
 RATE = 60.0  # poses a second that are looked at
+# m/s, of a figure of 1.75 m, that the body may go over the floor in a blend, however still the clips are:
+SHIFTS = 0.3
 
 
 def find_body_joints(skeleton: Skeleton, roles: Mapping[str, int]) -> list[int]:

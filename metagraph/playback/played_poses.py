@@ -26,6 +26,7 @@ from metagraph.playback.evaluator import CONTACTS, LIFE, WEIGHT, Evaluator
 from metagraph.playback.own_moves import RATE, find_body_joints
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.contacts import measure_contact_depths
+from metagraph.playback.posing.foot_slides import find_feet_joints
 from metagraph.playback.posing.rigs import get_rigs
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ class PlayedPoses:
     """What was seen of a performance. times `[F]` seconds. places `[F, P, 3]` metres of `parts`. lowest
     `[F]`: how high the lowest joint of the body is. sits `[F]`: whether it sits. inside `[F]`:
     how deep an arm is within the body, metres. added: by stage, what it adds on the way to each frame,
-    `[4, F]`, as `AddedMoves.worst` returns it.
+    `[4, F]`, as `AddedMoves.worst` returns it. feet `[F, K, 3]`: places of `feet_joints`, metres.
     """
 
     times: Array
@@ -57,6 +58,8 @@ class PlayedPoses:
     sits: Array
     inside: Array
     added: Mapping[str, Array]
+    feet_joints: tuple[int, ...]
+    feet: Array
 
 
 class PoseWatcher:
@@ -71,6 +74,7 @@ class PoseWatcher:
         self._parts = tuple(part for part in PARTS if part in roles)
         self._joints = [roles[part] for part in self._parts]
         self._body = find_body_joints(skeleton, roles)
+        self._feet = [joint for side in find_feet_joints(project) for joint in side]
         self._contacts = get_rigs(project).contacts
         self._thighs = [
             [roles[f"{side}_{part}_leg"] for part in ("upper", "lower")]
@@ -99,6 +103,8 @@ class PoseWatcher:
             _is_sitting(at, self._thighs, self._trunk),
             depths,
             {name: moves[name].worst(self._law.joints) for name in ADDED},
+            tuple(self._feet),
+            at[:, self._feet].astype(np.float32),
         )
 
 
@@ -241,6 +247,8 @@ def _join_poses(pieces: Sequence[PlayedPoses]) -> PlayedPoses:
         whole("sits"),
         whole("inside"),
         added,
+        pieces[0].feet_joints,
+        whole("feet"),
     )
 
 

@@ -7,8 +7,9 @@ of it is measured on the poses that are drawn, and compared with what the clips 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from math import ceil, floor
 from typing import Any
 
 import numpy as np
@@ -21,12 +22,17 @@ from metagraph.graph.problem import Problem, Severity
 from metagraph.graph.repeating import seconds_played
 from metagraph.graph.requests import Play
 from metagraph.motion.in_place import measure_travel
+from metagraph.playback.continuity import find_blends
 from metagraph.playback.evaluator import CONTACTS, LIFE, WEIGHT
-from metagraph.playback.own_moves import RATE, measure_own_moves, play_clips
+from metagraph.playback.own_moves import RATE, SHIFTS, measure_own_moves, play_clips
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.running_plan import improvise, plan_performance
 from metagraph.playback.played_poses import PARTS, PlayedPoses, count_chunks, watch_plans
 from metagraph.playback.posing.composer import find_playable_motion
+from metagraph.playback.posing.foot_slides import RATE as FEET_RATE
+from metagraph.playback.posing.foot_slides import FeetWatch
+from metagraph.playback.posing.weight import has_planted_feet
+from metagraph.playback.quiet_layers import find_quiet_layers
 
 Array = NDArray[Any]
 
@@ -39,6 +45,9 @@ JUMP = 100.0  # m/s2: 2.8 cm from one sixtieth of a second to the next
 FAST = 3.0  # m/s that a hand may go in a blend
 OWN = 0.8  # share of what is seen that a clip must do by itself to be the reason
 GLIDE, GLIDES = 0.6, 0.15  # m/s that the hips may go over the floor in a blend; metres that are seen
+SHIFTED = 0.06  # metres that they go at more than SHIFTS, and a viewer sees that nothing carries them
+SETTLES = 0.5  # seconds between blends that are looked at as one
+SKATE, SKATES = 0.1, 0.03  # m/s that a standing foot may slide in a blend; metres that are seen
 UNDER = 0.05  # metres below the floor
 ABOVE = 0.20  # metres of the lowest joint above it
 INSIDE = 0.03  # metres of an arm within the body
@@ -121,7 +130,9 @@ def rehearse(
     played = watch_plans(project, [(plan, length) for plan, length, _ in plans], step)
     for (plan, _, free), seen in zip(plans, played, strict=False):  # fewer, if it was cancelled
         out += _Findings(project, plan, seen, limits, free).problems()
-    return _merged(out)
+    if cancelled is not None and cancelled():
+        return _merged(out)
+    return _merged([*out, *find_quiet_layers(project)])
 
 
 def _ask_for_each(project: Project) -> tuple[list[Play], float]:
@@ -171,7 +182,7 @@ class _Findings:
         self.speeds, self.changes = limits
 
     def problems(self) -> list[Problem]:
-        found = [*self._jumps(), *self._added(), *self._fast(), *self._glides()]
+        found = [*self._jumps(), *self._added(), *self._fast(), *self._glides(), *self._skates()]
         found += [*self._floor(), *self._arms_inside()]
         return [*found, *self._never_seen()] if self.free else found
 
@@ -365,12 +376,19 @@ class _Findings:
         part = self.seen.parts.index("hips")
         level = self.seen.places[:, part][:, (0, 2)]
         speeds = np.linalg.norm(np.diff(level, axis=0), axis=-1) * RATE
-        limits = np.maximum(USUAL * self.speeds, GLIDE * self.size)
+        limits = np.maximum(USUAL * self.speeds, SHIFTS * self.size)
         for frame, value, cause, _ in self._worst(speeds, limits, part):
             some = level[max(0, frame - round(RATE)) : frame + round(RATE)]
             far = float(np.linalg.norm(np.ptp(some, axis=0)))
             own = self._own_moves("hips", float(self.seen.times[frame]), cause)[0]
-            if not cause.blending or far < GLIDES * self.size or OWN * value <= own:
+            if not cause.blending or far < SHIFTED * self.size or OWN * value <= own:
+                continue
+            if value < GLIDE * self.size or far < GLIDES * self.size:
+                words = phrase(
+                    "the body slides {length:.0f} cm at {speed:.1f} m/s", length=100 * far, speed=value
+                )
+                remedy = phrase("Lengthen the blend in the timing editor, or add a clip that leads there.")
+                yield self._problem("play-sway", words, remedy, frame, cause)
                 continue
             words = phrase("the body slides {length:.1f} m at {speed:.1f} m/s", length=far, speed=value)
             if self._can_stay(cause.action):
@@ -381,6 +399,55 @@ class _Findings:
                     "In the timing editor, end the action where its hips are back, or lengthen its blend."
                 )
                 yield self._problem("play-sway", words, remedy, frame, cause, "error")
+
+    def _skates(self) -> Iterator[Problem]:
+        """Yield where a foot that stands slides while poses blend, as the window marks it."""
+        skeleton = self.project.skeleton
+        if skeleton is None or not self.seen.feet_joints or not len(self.seen.times):
+            return
+        times, joints = self.seen.times, list(self.seen.feet_joints)
+
+        def places_at(wanted: Array) -> Array:
+            at = np.clip((wanted - times[0]) * RATE, 0, len(times) - 1)
+            low = np.minimum(at.astype(int), max(0, len(times) - 2))
+            high, part = np.minimum(low + 1, len(times) - 1), (at - low)[:, None, None]
+            out = np.zeros((len(wanted), len(skeleton), 3))
+            out[:, joints] = self.seen.feet[low] * (1 - part) + self.seen.feet[high] * part
+            return out
+
+        watch = FeetWatch(self.project, places_at, float(times[-1]), self.plan)
+        layer = watch.layer
+        best: dict[tuple[str, str], tuple[float, float, int, float, _Cause]] = {}
+        for first, last in _join_spans(find_blends(self.plan.layers[layer]), SETTLES):
+            numbers = range(max(0, floor(first * FEET_RATE)), ceil(min(last, times[-1]) * FEET_RATE) + 1)
+            found = watch.at(numbers)
+            for side in range(found.slides.shape[1] if len(found.times) else 0):
+                slides = found.slides[:, side]
+                over = slides > SKATE * self.size
+                if not over.any():
+                    continue
+                n = int(np.argmax(slides))
+                here = found.places[over, side][:, (0, 2)]
+                far = float(np.linalg.norm(np.ptp(here, axis=0))) if over.sum() > 1 else float(slides[n]) / 4
+                cause = self._cause(layer, float(found.times[n]))
+                if far < SKATES * self.size or not cause.blending:
+                    continue
+                if cause.key not in best or best[cause.key][1] < slides[n]:
+                    best[cause.key] = far, float(slides[n]), side, float(found.times[n]), cause
+        for far, speed, side, time, cause in best.values():
+            words = phrase(
+                "{part} slides {length:.0f} cm at {speed:.2f} m/s while it stands",
+                part=_NAMES[("left_foot", "right_foot")[side]],
+                length=100 * far,
+                speed=speed,
+            )
+            remedy = (
+                phrase("Lengthen the blend in the timing editor, or add a clip that leads there.")
+                if has_planted_feet(self.project)
+                else phrase("Turn *Planted feet* up under Life.")
+            )
+            frame = int(np.clip(round((time - times[0]) * RATE), 0, len(times) - 1))
+            yield self._problem("play-skate", words, remedy, frame, cause)
 
     def _can_stay(self, ident: str | None) -> bool:
         """Return whether keeping an action's clip in place takes out a way that it makes."""
@@ -501,6 +568,19 @@ def _merged(problems: Sequence[Problem]) -> list[Problem]:
         first.setdefault((p.code, p.layer, p.action or p.stance), p)
     order = {"error": 0, "warning": 1, "hint": 2}
     return sorted(first.values(), key=lambda p: order[p.severity])
+
+
+def _join_spans(spans: Iterable[tuple[float, float]], apart: float) -> list[tuple[float, float]]:
+    """Return spans in order, with those that are less than some seconds apart as one."""
+    out: list[tuple[float, float]] = []
+    for first, last in sorted(spans):
+        if last <= first:
+            continue
+        if out and first - out[-1][1] < apart:
+            out[-1] = out[-1][0], max(out[-1][1], last)
+        else:
+            out.append((first, last))
+    return out
 
 
 def _clock(seconds: float) -> str:

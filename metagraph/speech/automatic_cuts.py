@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import ceil
 
 from metagraph.graph.conversation.edits import add_conversation
 from metagraph.graph.conversation.model import Conversation, Segment
@@ -24,7 +25,8 @@ HELD = 0.4  # seconds that the last speaker is still seen in a longer pause
 MUSING = 1.2  # seconds before the first sound, at most, that somebody is seen who thinks before an answer
 AGAIN = 40.0  # seconds after which a short turn is used to show all again
 SHORT_TURN = 4.0  # seconds
-LONG = 7.0  # seconds of one picture of a speaker after which it goes closer, or back
+LONG = 7.0  # seconds at most of one picture of a speaker, after which it goes closer, or back
+CLOSE = 6.0  # and of one from near, in which little moves
 SILENCE = 3.0  # seconds without a word in which all are seen
 REACTION = 1.8  # seconds that a listener is seen
 ANSWER = 0.35  # seconds before its answer at which it is cut to a listener
@@ -91,8 +93,9 @@ def make_automatic_cuts(conversation: Conversation) -> tuple[Cut, ...]:
         if begin < turn.end - SHORTEST / 2:
             cut(begin, "two" if together else "over", 0 if together else side)
             shown = begin if together else shown
-        if not both:
-            _cut_within(conversation, turn, begin, min(turn.end, after), cut)
+        if not both:  # who spoke before, and goes on, has been seen for longer
+            seen = min(begin, cuts[-1].at) if (cuts[-1].shot, cuts[-1].side) == ("over", side) else begin
+            _cut_within(conversation, turn, (begin, seen), min(turn.end, after), cut)
         until = max(until, turn.end)
         if n + 1 < len(found) and found[n + 1].side == side:
             _cut_to_answer(conversation, turn, after, cut)
@@ -125,11 +128,13 @@ def _cut_to_answer(
 def _cut_within(
     conversation: Conversation,
     turn: FloorTurn,
-    begin: float,
+    begin: tuple[float, float],
     end: float,
     cut: Callable[[float, Shot, int], None],
 ) -> None:
-    """Cut within a long turn: closer and back, and to who listens."""
+    """Cut within a long turn: closer and back, and to who listens. begin: when the turn begins, and since
+    when its speaker is seen.
+    """
     answers = sorted(
         (s.start - ANSWER, n)
         for n, side in enumerate(conversation.sides)
@@ -139,18 +144,22 @@ def _cut_within(
     )
     listener = 1 - turn.side if len(conversation.sides) == 2 else None
     shots: tuple[Shot, Shot] = ("close", "over")
-    seen, last, place = begin, begin, 0  # when a listener was last seen, the last cut, the next shot
+    seen, last, place = begin[0], begin[1], 0  # when a listener was last seen, the last cut, the next shot
     while True:
-        at, who = last + LONG, turn.side
-        answer = next((a for a in answers if last + BEFORE <= a[0] <= at), None)
+        most = LONG if place % 2 == 0 else CLOSE
+        if end - last <= most:
+            return
+        # Pictures of one length: none that is left over is too short to be seen, nor added to the last.
+        at, who = max(last + (end - last) / ceil((end - last) / most), begin[0]), turn.side
+        from_now = max(last + BEFORE, begin[0])
+        answer = next((a for a in answers if from_now <= a[0] <= last + most), None)
+        unseen = max(at, seen + UNSEEN)
         if answer is not None and answer[0] < end - REACTION - SHORTEST:
             at, who = answer
-        elif listener is not None and UNSEEN - 0.01 <= at - seen < end - seen - REACTION - SHORTEST:
-            who = listener
-        if at >= end - SHORTEST:
-            return
+        elif listener is not None and unseen <= last + most and unseen < end - REACTION - BEFORE - SHORTEST:
+            at, who = unseen, listener
         if who == turn.side:
-            last = _between_words(conversation, turn.side, at)
+            last = min(_between_words(conversation, turn.side, at), end - SHORTEST)
             cut(last, shots[place % 2], who)
         else:
             cut(at, "close", who)

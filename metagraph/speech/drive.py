@@ -29,13 +29,14 @@ from metagraph.graph.requests import (
     Point,
     Say,
 )
-from metagraph.playback.plan import Plan
+from metagraph.playback.life.wanted import PARTNER as USER
+from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planning.choice import uniform
 from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.playback.timing.phases import find_phases
 from metagraph.speech.addressing import TURN, find_speaking_spans
 from metagraph.speech.arm_stances import ArmStances, place_arm_stances
-from metagraph.speech.gesture_choice import GestureClause, choose_gestures
+from metagraph.speech.gesture_choice import GestureClause, choose_gestures, find_gesture_family
 from metagraph.speech.group_gaze import list_looks
 from metagraph.speech.mode_spans import list_modes
 from metagraph.speech.peak_blinks import place_peak_blinks
@@ -49,7 +50,10 @@ HEAD: Point = (0.0, 1.6, 1.3)  # metres: where a partner's head is if its height
 PLAIN = ("beat", "explain", "open")  # tags of gestures that go with any words
 REST = 3.5  # seconds without requests after which a character may fidget
 FIDGETS = 0.5  # how often it does
-ECHO = 6.0  # seconds before and after a gesture of another side in which none of its name is chosen
+# Seconds before and after a gesture of another side in which others of its family are chosen less: the less
+# the nearer, not at all within 6 s if there is another.
+ECHO = 30.0
+NEAR_ECHO = 6.0
 # how often the body changes its stance when its side begins to speak, where most shifts of posture are
 # (Cassell et al. 2001)
 SHIFTS = 0.4
@@ -143,6 +147,8 @@ def _looks(conversation: Conversation, side: int, heads: Sequence[Point]) -> Ite
     others = list_other_sides(conversation, side)
     if len(others) == 1:
         yield Place(id=PARTNER, at=0.0, name=PARTNER, point=heads[0])
+        # After a timed look, the gaze comes back to whom the character talks with: there, too.
+        yield Place(id=USER, at=0.0, name=USER, point=heads[0])
         yield Look(id="look", at=0.0, to=PARTNER)
         yield from look_at_turns(conversation, side, PARTNER, heads[0])
         return
@@ -201,13 +207,13 @@ def _chosen(
             find_clause_peak(s),
             key in drawn,
             _fitting(usable[arms.at(s.start)], tags[key]),
-            frozenset(c.action.name for c in theirs if c.start - ECHO < find_clause_peak(s) < c.end + ECHO),
+            _echoes(theirs, find_clause_peak(s)),
         )
         for key, s in said
     ]
     for one in choose_gestures(project, clauses, conversation.seed, conversation.length):
         (key, s), clause = said[one.clause], clauses[one.clause]
-        if one.free and clause.wanted and not clause.echoes:
+        if one.free and clause.wanted and not any(near >= 1 for near in clause.echoes.values()):
             meant = tags[key] if set(tags[key]) - set(PLAIN) else one.action.tags
             meant = tuple(tag for tag in meant if tag in (*PLAIN, *tags[key]))[:1]
             yield Gesture(id=key, at=s.start, stroke=clause.peak, tags=meant, priority=CLAUSE)
@@ -216,6 +222,18 @@ def _chosen(
                 id=key, at=s.start, layer="arms", action=one.action.id, stroke=clause.peak, hold=one.hold,
                 priority=CLAUSE,
             )  # fmt: skip
+
+
+def _echoes(theirs: Sequence[Cue], at: float) -> dict[str, float]:
+    """Return how near others' gestures are to a time, 0..1, by family; 1 within NEAR_ECHO seconds."""
+    out: dict[str, float] = {}
+    for cue in theirs:
+        away = max(cue.start - at, at - cue.end, 0.0)
+        near = min(1.0, (ECHO - away) / (ECHO - NEAR_ECHO))
+        family = find_gesture_family(cue.action.name)
+        if near > out.get(family, 0.0):
+            out[family] = near
+    return out
 
 
 def _fitting(every: Sequence[Action], tags: Collection[str]) -> Sequence[Action]:

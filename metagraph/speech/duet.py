@@ -20,9 +20,10 @@ from metagraph.graph.conversation.model import Conversation, Side, list_other_si
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Line, Performance, Point
 from metagraph.motion import rotation
-from metagraph.playback.life.body import LIFELESS
+from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.voice import Voice
 from metagraph.playback.plan import Plan
+from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.playback.posing.rigs import get_rigs
 from metagraph.speech.delivered import Delivered, count_delivered
 from metagraph.speech.drive import drive
@@ -148,17 +149,12 @@ def plan_duet(
     voices.
     """
     places = place_sides(conversation)
-    ahead = len(places) == 2 and all(side.place is None for side in conversation.sides)
+    eyes = [find_resting_eyes(project) for project in projects]
     movers: list[Mover] = []
     driven = []
     for n in range(len(conversation.sides)):
         known = _with_voice(conversation, ident, n, projects[n], heard[n])
-        heads = tuple(
-            (0.0, round(_head(projects[m]), 3), conversation.distance)
-            if ahead
-            else places[n].own(places[m].world(_eyes(projects[m])))
-            for m in list_other_sides(conversation, n)
-        )
+        heads = tuple(places[n].own(places[m].world(eyes[m])) for m in list_other_sides(conversation, n))
         performance, plan = drive(conversation, n, *known, heads, others=[m.plan for m in movers])
         driven.append((known, heads, performance))
         movers.append(Mover(n, known[0], plan))
@@ -204,18 +200,23 @@ def _free_id(ident: str, side: int, project: Project) -> str:
     return out
 
 
-def _head(project: Project) -> float:
-    """Return how high a character's head is, metres."""
-    if project.skeleton is None:
-        return HEAD
-    head = anatomy.project_roles(project).get("head")
-    return HEAD if head is None else float(project.skeleton.globals(project.skeleton.rest)[1][head, 1])
-
-
-def _eyes(project: Project) -> Point:
-    """Return where a character's eyes are, metres, in its own space."""
-    body = get_rigs(project).body if project.skeleton is not None else LIFELESS
-    if body.empty:
-        return 0.0, round(_head(project), 3), 0.0
-    x, y, z = (round(v, 3) for v in body.eyes_at_rest)
-    return x, y, z
+def find_resting_eyes(project: Project) -> Point:
+    """Return where a character's eyes are as it rests in the stances it begins in, metres, in its own space:
+    of somebody who sits, lower and farther back than in the pose at rest.
+    """
+    skeleton, roles = project.skeleton, anatomy.project_roles(project)
+    head = roles.get("head")
+    if skeleton is None or head is None:
+        return 0.0, HEAD, 0.0
+    rests = Evaluator(plan_performance(project, (), 1.0, 0, idle=False), project).layered(np.zeros(1))
+    turned, at = (x[0].astype(float) for x in skeleton.globals(rests))
+    eyes = [roles[eye] for eye in ("left_eye", "right_eye") if eye in roles]
+    if len(eyes) == 2:
+        x, y, z = (at[eyes[0]] + at[eyes[1]]) / 2
+    else:  # where the rig has them, beside the head as it is turned
+        body = get_rigs(project).body
+        rest_turned, rest_at = (x.astype(float) for x in skeleton.globals(skeleton.rest))
+        known = rest_at[head] if body.empty else np.asarray(body.eyes_at_rest, float)
+        own = rotation.rotate_vectors(rotation.conjugate(rest_turned[head]), known - rest_at[head])
+        x, y, z = at[head] + rotation.rotate_vectors(turned[head], own)
+    return round(float(x), 3), round(float(y), 3), round(float(z), 3)

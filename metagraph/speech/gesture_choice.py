@@ -9,8 +9,10 @@ dynamic programming over the clauses.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cache
 from math import inf, log
 from typing import Any
 
@@ -27,7 +29,9 @@ from metagraph.playback.timing.phases import find_phases
 Array = NDArray[Any]
 
 STROKE, HELD = 1.0, 0.6  # what a stroke on a clause's peak is worth, and a hold over it
-UNASKED = (-0.5, -0.2, 0.1, 0.4)  # of that where none was drawn for the clause; more where too few have room
+# Of that where none was drawn for the clause: more where too few have room, and most in a stance that has so
+# few gestures that each repeats.
+UNASKED = (-0.5, -0.2, 0.1, 0.4, 0.7, 1.0)
 APART = 5.0  # seconds between the peaks of two clauses that do not hinder each other
 CUT, HURRIED, KEPT = (
     0.15,
@@ -42,20 +46,23 @@ LONGEST_HOLD = 1.6  # seconds a hold is kept up at most
 AFTER = 0.1  # seconds a hold goes on after a peak it is kept for
 CHOICES = 10  # gestures tried for a clause, beside the shortest
 SHORT = 2  # of the shortest
+_PARTS = re.compile(r"[\W_\d]+")  # between words of a name
+_ARMS = frozenset(("l", "r", "lf", "rt", "bt", "left", "right", "both"))
 BACK = 12  # clauses that a gesture may reach over, at most
 
 
 @dataclass(frozen=True, slots=True)
 class GestureClause:
     """A clause that may get a gesture. key: of its draws. peak: seconds. wanted: whether one was drawn for
-    it. actions: those that go with its words. echoes: names of gestures that others make about then.
+    it. actions: those that go with its words. echoes: by family of gestures that others make about then, how
+    near that is, 0..1.
     """
 
     key: str
     peak: float
     wanted: bool
     actions: Sequence[Action]
-    echoes: frozenset[str] = frozenset()
+    echoes: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,11 +111,14 @@ def choose_gestures(
     known: dict[str, _Lengths] = {}
     used = _UsedGestures(project)
     out: list[ChosenGesture] = []
-    first = 0
+    first, owed = 0, 0
     for n in range(1, len(clauses) + 1):
         if n == len(clauses) or clauses[n].peak - clauses[n - 1].peak >= APART:
             begun = out[-1].end + project.settings.rest if out else 0.0
-            found = _of_turn(project, clauses[first:n], seed, length, known, begun, used)
+            turn = clauses[first:n]
+            found = _of_turn(project, turn, seed, (begun, length), known, used, owed)
+            # What had no room in one turn is made up for in the next ones, as in a stance with more gestures.
+            owed = max(0, owed + sum(c.wanted for c in turn) - _count_clauses(found))
             out += [replace(o, clause=o.clause + first, last=o.last + first) for o in found]
             for one in found:
                 used.note(one.action, clauses[one.clause + first].peak)
@@ -116,8 +126,17 @@ def choose_gestures(
     return _freed(project, clauses, out, known)
 
 
+@cache
+def find_gesture_family(name: str) -> str:
+    """Return a gesture's name without its number and the arm that makes it: what viewers see as one gesture.
+    The name itself if nothing else is left.
+    """
+    words = [word for word in _PARTS.split(name.casefold()) if word and word not in _ARMS]
+    return " ".join(words) or name
+
+
 class _UsedGestures:
-    """What it costs to make gestures again, by when each was made last."""
+    """What it costs to make gestures again, by when one of each family was made last."""
 
     def __init__(self, project: Project) -> None:
         self._project, self._last, self._needed = project, dict[str, float](), dict[str, float]()
@@ -126,13 +145,13 @@ class _UsedGestures:
 
     def note(self, action: Action, at: float) -> None:
         """Note that a gesture's stroke is at a time."""
-        self._last[action.id] = at
+        self._last[find_gesture_family(action.name)] = at
 
     def cost(self, action: Action, at: float, last: float | None = None) -> float:
         """Return what a gesture costs whose stroke is at a time. last: when it was made before; None for
         when it was noted.
         """
-        before = self._last.get(action.id) if last is None else last
+        before = self._last.get(find_gesture_family(action.name)) if last is None else last
         if before is None or self._project.settings.variety <= 0:
             return 0.0
         if action.id not in self._needed:
@@ -143,26 +162,28 @@ class _UsedGestures:
 
 
 def _of_turn(
-    project: Project, turn: Sequence[GestureClause], seed: int, length: float,
-    known: dict[str, _Lengths], begun: float, used: _UsedGestures,
+    project: Project, turn: Sequence[GestureClause], seed: int, span: tuple[float, float],
+    known: dict[str, _Lengths], used: _UsedGestures, owed: int,
 ) -> list[ChosenGesture]:  # fmt: skip
     """Return the gestures of clauses that nothing parts: chosen again with what repeats made dearer, as long
-    as that repeats less and serves as many clauses. begun: seconds before which none may play.
+    as that repeats less and serves as many clauses. span: seconds before and after which none may play. owed:
+    how many clauses more than were drawn are to get one.
     """
     tried = [_tried(project, clause, seed, known, used) for clause in turn]
     costs = {
-        (n, action.id): used.cost(action, clause.peak) + ECHOED * (action.name in clause.echoes)
+        (n, action.id): used.cost(action, clause.peak)
+        + ECHOED * clause.echoes.get(find_gesture_family(action.name), 0.0)
         for n, (clause, actions) in enumerate(zip(turn, tried, strict=True))
         for action in actions
     }
-    best = _best_of_turn(project, turn, tried, costs, seed, length, known, begun)
+    best = _best_of_turn(project, turn, tried, costs, seed, span, known, owed)
     repeated = _repeated(turn, best, used)
     for _ in range(RETRIES):
         if not repeated:
             break
         for key, cost in repeated.items():
             costs[key] = costs[key] + cost
-        found = _best_of_turn(project, turn, tried, costs, seed, length, known, begun)
+        found = _best_of_turn(project, turn, tried, costs, seed, span, known, owed)
         again = _repeated(turn, found, used)
         if _count_clauses(found) < _count_clauses(best) or sum(again.values()) >= sum(repeated.values()):
             break
@@ -177,12 +198,12 @@ def _repeated(
     out: dict[tuple[int, str], float] = {}
     made: dict[str, float] = {}
     for one in found:
-        at = turn[one.clause].peak
-        if one.action.id in made:
-            cost = used.cost(one.action, at, made[one.action.id])
+        at, family = turn[one.clause].peak, find_gesture_family(one.action.name)
+        if family in made:
+            cost = used.cost(one.action, at, made[family])
             if cost > 0:
                 out[one.clause, one.action.id] = cost
-        made[one.action.id] = at
+        made[family] = at
     return out
 
 
@@ -192,13 +213,13 @@ def _count_clauses(found: Sequence[ChosenGesture]) -> int:
 
 def _best_of_turn(
     project: Project, turn: Sequence[GestureClause], tried: Sequence[Sequence[Action]],
-    costs: Mapping[tuple[int, str], float], seed: int, length: float, known: dict[str, _Lengths],
-    begun: float,
+    costs: Mapping[tuple[int, str], float], seed: int, span: tuple[float, float],
+    known: dict[str, _Lengths], owed: int,
 ) -> list[ChosenGesture]:  # fmt: skip
     """Return the gestures that are worth most together: where too few of those that were drawn have room,
     others make up for them. costs: of each action for each clause.
     """
-    drawn = sum(c.wanted for c in turn)
+    drawn = sum(c.wanted for c in turn) + owed
     best: list[ChosenGesture] = []
     for unasked in UNASKED:
         options: list[ChosenGesture] = []
@@ -206,13 +227,13 @@ def _best_of_turn(
         firsts = [0]
         for n, actions in enumerate(tried):
             for action in actions:
-                for option, value in _options(turn, n, action, known[action.id], seed, length, unasked):
+                for option, value in _options(turn, n, action, known[action.id], seed, span[1], unasked):
                     options.append(option)
                     worth.append(value - costs[n, action.id])
             firsts.append(len(options))
         if not options:
             break
-        places = _best(options, np.array(worth), firsts, known, turn, project.settings.rest, begun)
+        places = _best(options, np.array(worth), firsts, known, turn, project.settings.rest, span[0])
         found = [options[o] for o in places]
         if _count_clauses(found) > _count_clauses(best):
             best = found

@@ -21,7 +21,8 @@ AWAY_FIRST = 0.3  # seconds before the turn in which it begins
 AWAY_LEAST, AWAY_MORE = 0.9, 0.9  # seconds it lasts at least, and what chance adds
 ASIDE, UP = 18.0, 7.0  # degrees beside and above the other's eyes
 BACK = 0.8  # share of long turns that end with a look at the other
-LAST = 1.2  # seconds before the end in which the gaze stays
+LONGER = 3.0  # seconds from which on it mostly ends with a look: a short one is hardly over its beginning
+LAST = 0.9  # seconds before the end in which the gaze stays
 NODS = 0.4  # share of the other's clauses that are answered by a nod
 LAG = 0.6  # seconds after the clause, on average
 APART = 3.0  # seconds between two nods
@@ -47,7 +48,7 @@ def look_at_turns(conversation: Conversation, side: int, partner: str, head: Poi
                 priority=2,
                 amount=0.7,
             )
-        if uniform(seed, own, f"turn {n}", "back") < BACK:
+        if end - start >= LONGER and uniform(seed, own, f"turn {n}", "back") < BACK:
             yield Look(
                 id=f"turn end {n}",
                 at=round(end - LAST, 3),

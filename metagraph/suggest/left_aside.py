@@ -79,8 +79,8 @@ def explain_skipping(
             "is only {seconds:.2f} s long: a pose in which no other clip begins or ends, not a movement",
             seconds=traits.duration,
         )
-    if said.kind is not None:
-        return ""
+    if said.kind is not None:  # a name may call an exercise a pose: "squat"
+        return _explain_exercise(traits, motion, 0.0) if said.kind.value == "stance" else ""
     if said.other is not None and (usual or said.other.value in SURELY or not _talks(traits, motion)):
         return said.other.reason
     if traits is None or motion is None or motion.chances is None:
@@ -106,17 +106,22 @@ def explain_skipping(
         )
     if traits.turned > ROUND:
         return phrase("turns by {degrees:.0f} degrees and ends in no other stance", degrees=traits.turned)
-    if (
-        traits.rise > EXERCISE
-        and traits.energy["legs"] > FAST
-        and begins
-        and ends
-        and begins[0][1] is ends[0][1]
-    ):
-        return phrase(
-            "moves up and down by {length:.0f} cm: an exercise", length=100 * traits.height * traits.rise
-        )
-    return ""
+    return _explain_exercise(traits, motion, FAST)
+
+
+def _explain_exercise(traits: Traits | None, motion: MotionGuess | None, fast: float) -> str:
+    """Return that a clip goes up and down and comes back to its stance, with legs faster than so many heights
+    a second; "" if it does not.
+    """
+    if traits is None or motion is None or not motion.begins or not motion.ends:
+        return ""
+    if motion.begins[0][1] is not motion.ends[0][1]:
+        return ""
+    if traits.rise <= EXERCISE or traits.energy["legs"] <= fast:
+        return ""
+    return phrase(
+        "moves up and down by {length:.0f} cm: an exercise", length=100 * traits.height * traits.rise
+    )
 
 
 def take_up_skipped(found: Proposals, clip: str) -> Proposals:

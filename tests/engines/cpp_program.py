@@ -28,7 +28,7 @@ needs_compiler = pytest.mark.skipif(shutil.which("g++") is None, reason="needs a
 # What of Unreal the plugin includes, as public plugins name it.
 ENGINE = {
     "CoreMinimal.h", "Engine/DataAsset.h", "Components/ActorComponent.h", "Components/SkeletalMeshComponent.h",
-    "GameFramework/Actor.h", "Animation/AnimNodeBase.h", "Animation/AnimInstance.h", "Animation/AnimInstanceProxy.h",
+    "GameFramework/Actor.h", "Animation/AnimNodeBase.h", "Animation/AnimInstance.h", "Animation/AnimCurveTypes.h", "Animation/AnimInstanceProxy.h",
     "BoneContainer.h", "Modules/ModuleManager.h", "AnimGraphNode_Base.h", "Factories/Factory.h", "Misc/FeedbackContext.h",
     "Misc/FileHelper.h", "Misc/Paths.h",
 }  # fmt: skip

@@ -11,12 +11,16 @@ import pytest
 
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets import registry
+from metagraph.engines.targets.target import Contents
 from metagraph.engines.targets.vrma import cut_action
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from tests.engines.test_export import gltf, khronos
+from tests.engines.test_npm_package import PACKAGES, needs
+from tests.engines.test_npm_package import node as run_node
+from tests.engines.test_target_vrm import with_document
 
 SAMPLES = Path(__file__).parents[2] / "sample_clips"
 
@@ -138,3 +142,61 @@ def test_what_is_no_humanoid_is_refused(project, tmp_path):
     lame = replace(project, roles={"left_hand": ""})
     with pytest.raises(ExportError, match="needs a humanoid"):
         registry.write_for_target(lame, "vrma", tmp_path)
+
+
+READ = """
+import { readFileSync } from "node:fs";
+import { VRMLoaderPlugin } from "@pixiv/three-vrm";
+import { createVRMAnimationClip, VRMAnimationLoaderPlugin } from "@pixiv/three-vrm-animation";
+import { AnimationMixer, Vector3 } from "three";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+
+globalThis.self ??= globalThis;
+const loader = new GLTFLoader();
+loader.register((parser) => new VRMLoaderPlugin(parser));
+loader.register((parser) => new VRMAnimationLoaderPlugin(parser));
+const read = async (path) => {
+  const bytes = readFileSync(path);
+  return (await loader.parseAsync(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length), "")).userData;
+};
+const [avatar, animation] = process.argv.slice(2);
+const { vrm } = await read(avatar);
+const { vrmAnimations } = await read(animation);
+const clip = createVRMAnimationClip(vrmAnimations[0], vrm);
+const mixer = new AnimationMixer(vrm.scene);
+mixer.clipAction(clip).play();
+const hand = vrm.humanoid.getRawBoneNode("rightHand");
+const places = [0.1, 0.5].map((seconds) => {
+  mixer.setTime(seconds);
+  vrm.update(0);
+  vrm.scene.updateMatrixWorld(true);
+  return hand.getWorldPosition(new Vector3()).toArray();
+});
+console.log(JSON.stringify({ duration: clip.duration, tracks: clip.tracks.length, places }));
+"""
+
+
+@needs("@pixiv/three-vrm", "@pixiv/three-vrm-animation", "three")
+def test_three_vrm_plays_a_file_on_an_avatar_as_the_clip_moves(
+    project: Project, written: list[Path], tmp_path: Path
+) -> None:
+    """On the project's own avatar, whose hands should be where the clip has them."""
+    report = registry.write_for_target(project, "vrm", tmp_path / "out", Contents(SAMPLES / "ada.glb"))
+    (avatar,) = (path for path in report.files if path.suffix == ".vrm")
+    bald = gltf(avatar)
+    for field in ("images", "textures", "samplers"):  # Node decodes no pictures
+        bald.pop(field, None)
+    bald["materials"] = [{"name": m.get("name", "")} for m in bald["materials"]]
+    avatar = with_document(avatar, bald, tmp_path / "bald.vrm")
+    (tmp_path / "node_modules").symlink_to(PACKAGES)
+    (tmp_path / "read.mjs").write_text(READ)
+    gesture = next(a for a in project.actions() if a.kind == "gesture")
+    file = next(path for path in written if path.stem == gesture.name)
+    words = ("--preserve-symlinks", "--preserve-symlinks-main", "read.mjs", avatar, file)
+    found = json.loads(run_node(*words, cwd=tmp_path).splitlines()[-1])
+    clip = cut_action(project, gesture)
+    assert clip is not None and found["duration"] == pytest.approx(clip.duration, abs=0.02)
+    place = clip.skeleton.index("RightHand")
+    for seconds, shown in zip((0.1, 0.5), found["places"], strict=True):
+        wanted = clip.skeleton.globals(clip.pose_at(seconds))[1][place]
+        assert np.linalg.norm(wanted - np.array(shown)) < 0.02, (seconds, wanted, shown)

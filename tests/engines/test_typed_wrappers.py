@@ -36,7 +36,7 @@ from tests.browsing import MODULES, Browser
 from tests.engines.cpp_program import FLAGS, needs_compiler
 from tests.engines.csharp_runtime import CORE, compiled, mono, needs_mono
 from tests.engines.godot4_web import needs_godot4, play, seen
-from tests.engines.godot_runtime import godot, needs_godot
+from tests.engines.godot_runtime import godot, install_addon, needs_godot
 from tests.engines.godot_runtime import run as run_in_godot
 from tests.engines.javascript_runtime import needs_node, run
 
@@ -476,7 +476,7 @@ func _init():
 @needs_godot
 def test_godot_3(export: Path, wanted: Told, tmp_path: Path) -> None:
     """The core of the add-on; the typed class needs Godot 4."""
-    shutil.copytree(RUNTIMES / "godot" / "addons", tmp_path / "addons")
+    install_addon(tmp_path)
     (tmp_path / "project.godot").write_text('config_version=4\n\n[application]\n\nconfig/name="game"\n')
     (tmp_path / "game.gd").write_text(GODOT3)
     args = {"export": str(export), "steps": SETTINGS, "refused": REFUSED}
@@ -521,7 +521,7 @@ def test_a_broken_parameter_is_an_error_of_loading(export: Path, broken: Any) ->
 
 @needs_godot
 def test_a_broken_parameter_is_an_error_of_loading_in_godot(export: Path, tmp_path: Path) -> None:
-    shutil.copytree(RUNTIMES / "godot" / "addons", tmp_path / "addons")
+    install_addon(tmp_path)
     (tmp_path / "project.godot").write_text('config_version=4\n\n[application]\n\nconfig/name="game"\n')
     document = json.loads((STICK / "stick.json").read_bytes())
     shutil.copy(STICK / "stick.glb", tmp_path)
@@ -602,7 +602,7 @@ def test_godot_4(project: Project, export: Path, wanted: Told, tmp_path: Path, b
     files = {
         f"addons/{path.relative_to(addon).as_posix()}": path.read_bytes()
         for path in addon.rglob("*")
-        if path.is_file() and "godot3" not in path.parts and path.name != "shim3.gd"
+        if path.is_file()
     }
     text = make_wrapper(project, "stick", "gdscript")["stick_parameters.gd"]
     body = "".join(f"\t{line}\n" for line in read_block("gdscript").splitlines())
@@ -685,7 +685,15 @@ def test_a_reorganised_graph_changes_nothing_and_a_rename_does(project: Project,
     assert make_wrapper(rename_parameter(project, "energy", "vigour"), "stick", language) != before
 
 
-@pytest.mark.parametrize(("name", "called"), [("talk", "TalkCharacter"), ("my character", "MyCharacter")])
+@pytest.mark.parametrize(
+    ("name", "called"),
+    [
+        ("talk", "TalkCharacter"),
+        ("my character", "MyCharacter"),
+        ("Character", "ExportedCharacter"),
+        ("metagraph", "ExportedCharacter"),
+    ],
+)
 def test_the_class_is_called_after_the_project(project: Project, name: str, called: str) -> None:
     assert make_class_name(replace(project, name=name)) == called
     assert make_class_name(replace(project, name="話す")) == "ExportedCharacter"
@@ -739,7 +747,9 @@ def test_targets_write_the_class_only_for_projects_with_parameters(
     report = registry.write_for_target(typed, target, tmp_path / "typed")
     assert set(stems) <= {path.name for path in report.files}
     readme = next(p for p in report.files if p.name == "README.md" and p.parent == tmp_path / "typed")
-    assert all(name in readme.read_text(encoding="utf-8") for name in stems)
+    text = readme.read_text(encoding="utf-8")
+    assert all(name.replace("Toy", "*") in text for name in stems)
+    assert "a class of the parameters" in text
 
 
 def test_a_choice_keeps_its_name_whatever_it_stands_for(project: Project) -> None:

@@ -26,6 +26,7 @@ using UnityEditor;
 using UnityEditor.AssetImporters;
 using UnityEngine;
 using UnityEngine.Animations;
+using UnityEngine.Experimental.Animations;
 using UnityEngine.Playables;
 
 public static class Importing
@@ -36,6 +37,7 @@ public static class Importing
     private static GameObject Model()
     {
         var root = new GameObject("model");
+        root.AddComponent<Animation>();
         var joints = new List<Transform>();
         foreach (JointInfo joint in graph.Joints)
         {
@@ -93,6 +95,7 @@ public static class Importing
         context.told.ForEach(Console.WriteLine);
         var figure = (GameObject)context.main;
         var character = figure.GetComponent<MetagraphCharacter>();
+        Console.WriteLine("alone " + (figure.GetComponent<Animation>() == null));
         Console.WriteLine("main " + figure.name + " " + ReferenceEquals(character.asset, context.made["export"]));
         Console.WriteLine("needs " + string.Join(" ", context.needs.Select(Path.GetFileName).ToArray()));
 
@@ -187,6 +190,7 @@ def test_the_importer_makes_a_character_and_clips_and_a_job_shows_its_poses(
     done = mono(importing, export)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.splitlines() == [
+        "alone True",
         "main stick True",
         "needs stick.json stick.glb",
         "clips True True True",

@@ -8,9 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from app.project.files import SAMPLE
 from metagraph.formats.characters import CharacterFile, find_held_meshes
 from metagraph.formats.gltf.reader import read_character
 from metagraph.formats.gltf.writer import write_glb
+from metagraph.formats.import_words import describe_imported
 from metagraph.formats.imports import import_files
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import CharacterMesh, Surface
@@ -110,3 +112,23 @@ def test_a_robots_hand_of_plates_is_no_prop(shared_data: Path) -> None:
 
 def test_a_body_made_of_nothing_but_plates_holds_nothing() -> None:
     assert find_held_meshes(whole()) == ()
+
+
+def test_a_character_given_by_itself_takes_the_place_of_the_projects_own(tmp_path: Path) -> None:
+    shutil.copy(SAMPLE.parent / "ben.glb", tmp_path / "me.glb")
+    own = read_character(tmp_path / "me.glb").skeleton
+    skeleton = replace(own, names=tuple(f"rig:{name}" for name in own.names))
+    project = Project(skeleton=skeleton, character="mine.glb")
+    result = import_files(project, tmp_path, [tmp_path / "me.glb"])
+    assert result.failures == () and result.chosen
+    assert result.into(project).character == "me.glb"
+    assert describe_imported(result) == "Drawn with me.glb from now on"
+    write_glb(tmp_path / "a.glb", [clip("a")])
+    beside = import_files(project, tmp_path, [tmp_path])
+    assert not beside.chosen and beside.into(project).character == "mine.glb"
+
+
+def test_a_mesh_given_by_itself_that_is_nobodys_stays_a_failure(tmp_path: Path) -> None:
+    write_glb(tmp_path / "me.glb", [], proxy(whole()))
+    result = import_files(Project(skeleton=SKELETON), tmp_path, [tmp_path / "me.glb"])
+    assert not result.chosen and len(result.failures) == 1

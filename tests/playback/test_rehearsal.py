@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from metagraph.graph import edits
 from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
@@ -45,6 +46,15 @@ def travelling(metres: float) -> Callable[[Clip], Clip]:
     def change(clip: Clip) -> Clip:
         places = clip.translations.copy()
         places[:, 0, 2] += metres * np.linspace(0, 1, clip.frames)
+        return replace(clip, translations=places)
+
+    return change
+
+
+def aside(metres: float) -> Callable[[Clip], Clip]:
+    def change(clip: Clip) -> Clip:
+        places = clip.translations.copy()
+        places[:, 0, 0] += metres
         return replace(clip, translations=places)
 
     return change
@@ -129,6 +139,45 @@ def test_what_a_clip_in_place_still_does_gets_another_advice(sound: Project, toy
     ]
     assert found and {p.code for p in found} == {"play-sway"}
     assert all("Keep" not in p.remedy for p in found)
+
+
+def test_a_body_that_slides_a_hand_s_breadth_in_a_short_blend_is_a_warning(sound: Project) -> None:
+    fast = changed(sound, aside(0.1), "rest to up")
+    ways = [a.id for a in fast.actions() if a.name == "rest to up"]
+    fast = edits.update_actions(fast, ways, timing={"blend_in": 0.3, "blend_out": 0.3})
+    found = [p for p in rehearse(fast, SECONDS) if p.code == "play-sway"]
+    assert found and {p.severity for p in found} == {"warning"}
+    assert "the body slides" in found[0].message and found[0].action in ways
+    slow = edits.update_actions(
+        changed(sound, aside(0.02), "rest to up"), ways, timing={"blend_in": 0.3, "blend_out": 0.3}
+    )
+    assert "play-sway" not in codes(slow)
+
+
+def standing_aside(toy: Any, metres: float) -> Project:
+    """Two stances that stand still, some metres apart, and short blends from one to the other."""
+    clips = [toy.clip("here", 3.0, 0.0, swing=0.0), aside(metres)(toy.clip("there", 3.0, 0.0, swing=0.0))]
+    project = edits.add_clips(Project("p"), [(f"{c.name}.glb", 0, "", c) for c in clips])
+    here, there = project.clips
+    for name, clip in (("here", here), ("there", there)):
+        project = edits.add_stance(project, "body", name, [clip])
+    a, b = project.graphs["body"].stances
+    project = edits.place_clips(project, [there], "body", "transition", a, b)
+    project = edits.place_clips(project, [here], "body", "transition", b, a)
+    ways = [x.id for x in project.actions() if x.kind == "transition"]
+    return edits.update_actions(project, ways, timing={"end": 1.0, "blend_in": 0.3, "blend_out": 0.3})
+
+
+def test_a_standing_foot_that_slides_in_a_blend_is_reported_unless_it_steps(toy: Any) -> None:
+    project = standing_aside(toy, 0.12)
+    glides = replace(project, life=Life(on=True, planted_feet=0.0))
+    found = [p for p in rehearse(glides, SECONDS) if p.code == "play-skate"]
+    assert found and "foot slides" in found[0].message and "Planted feet" in found[0].remedy
+    assert found[0].action in {x.id for x in project.actions() if x.kind == "transition"}
+    assert "play-skate" not in codes(replace(project, life=Life(on=True)))
+    assert "play-skate" not in codes(
+        replace(standing_aside(toy, 0.005), life=Life(on=True, planted_feet=0.0))
+    )
 
 
 def test_a_transition_that_travels_slides_back_and_is_named(sound: Project, toy: Any) -> None:

@@ -16,7 +16,12 @@ from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.speech import gesture_choice
 from metagraph.speech.delivered import count_delivered
 from metagraph.speech.drive import TOLERANCE, drive, find_stroke_times
-from metagraph.speech.gesture_choice import ChosenGesture, GestureClause, choose_gestures
+from metagraph.speech.gesture_choice import (
+    ChosenGesture,
+    GestureClause,
+    choose_gestures,
+    find_gesture_family,
+)
 from tests.speech.test_drive import clause, said
 
 
@@ -49,6 +54,41 @@ def test_clauses_that_none_was_drawn_for_get_none_by_themselves(sample: Project)
 def test_two_clauses_too_near_for_two_gestures_share_one(sample: Project) -> None:
     (one,) = choose_gestures(sample, spoken(sample, [3.0, 3.7]), 1)
     assert (one.clause, one.last) == (0, 1)
+
+
+@pytest.mark.parametrize(
+    ("name", "family"),
+    [
+        ("offer_lf_01", "offer"), ("offer_rt_02", "offer"), ("Beat Small Rt 3", "beat small"), ("01", "01"),
+        ("shrug", "shrug"), ("left", "left"), ("point_you", "point you"), ("身振り_右", "身振り 右"),
+    ],
+)  # fmt: skip
+def test_names_that_differ_by_an_arm_or_a_number_are_of_one_family(name: str, family: str) -> None:
+    assert find_gesture_family(name) == family
+
+
+def test_a_gesture_of_the_family_that_another_makes_is_left_to_that_one(sample: Project) -> None:
+    offers = [
+        a for a in plain(sample) if find_gesture_family(a.name) == find_gesture_family(plain(sample)[0].name)
+    ]
+    others = [a for a in plain(sample) if a not in offers][:2]
+    for seed in range(10):
+        heard = GestureClause("c", 4.0, True, [*offers, *others], {find_gesture_family(offers[0].name): 1.0})
+        (one,) = choose_gestures(sample, [heard], seed)
+        assert one.action in others
+
+
+def test_what_has_no_room_in_one_turn_is_made_up_for_in_the_next(sample: Project) -> None:
+    dense = [2.0 + 0.3 * n for n in range(12)]
+    later = [dense[-1] + 8.0 + 2.5 * n for n in range(6)]
+    for seed in range(4):
+        wanted = [True] * len(dense) + [n == 0 for n in range(len(later))]
+        found = choose_gestures(sample, spoken(sample, [*dense, *later], wanted), seed)
+        served = {n for one in found for n in range(one.clause, one.last + 1)}
+        early = sum(n < len(dense) for n in served)
+        assert early < len(dense) and len(served) - early > 1
+        alone = choose_gestures(sample, spoken(sample, later, [n == 0 for n in range(len(later))]), seed)
+        assert len(alone) < len(served) - early
 
 
 @settings(max_examples=30, deadline=None)

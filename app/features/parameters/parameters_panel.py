@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -153,9 +155,23 @@ class ParametersPanel(QWidget):
         for group, words in GROUPS.items():
             some = [one for one in offered if one.group == group]
             if some:
-                menu = self.add_menu.addMenu(tr(words))
-                for one in some:
-                    menu.addAction(tr_phrase(one.words).replace("&", "&&"), partial(self.add, one))
+                self._fill_group(self.add_menu.addMenu(tr(words)), some)
+
+    def _fill_group(self, menu: QMenu, some: Sequence[OfferedParameter]) -> None:
+        """Offer parameters; actions, which may be thousands, in menus of stances that fill when opened."""
+        places = dict.fromkeys(one.under for one in some)
+        if len(places) == 1:
+            for one in some:
+                menu.addAction(tr_phrase(one.words).replace("&", "&&"), partial(self.add, one))
+            return
+        for layer, stance in places:
+            inside = menu.addMenu(f"{tr(layer)}: {stance}".replace("&", "&&"))
+            found = [replace(one, under=("", "")) for one in some if one.under == (layer, stance)]
+            inside.aboutToShow.connect(partial(self._fill_once, inside, found))
+
+    def _fill_once(self, menu: QMenu, some: Sequence[OfferedParameter]) -> None:
+        if menu.isEmpty():
+            self._fill_group(menu, some)
 
     # --- declaring: each is a step to undo
 

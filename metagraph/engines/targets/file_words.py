@@ -12,6 +12,11 @@ SHARED: Mapping[str, str] = {
     "{stem}.glb": "the character, and its clips as animations",
     "lines/": "the sounds of lines",
     "requests.md": "all requests and their fields",
+    "{stem}_parameters.gd": "a typed class of the character's parameters",
+    "{stem}_parameters.hpp": "a typed class of the character's parameters",
+    "{stem}.parameters.js": "a typed class of the character's parameters",
+    "{stem}.parameters.d.ts": "its types",
+    "*.cs": "a typed class of the character's parameters",
 }
 FILES: Mapping[str, Mapping[str, str]] = {
     "web": {
@@ -46,6 +51,7 @@ FILES: Mapping[str, Mapping[str, str]] = {
     },
     "unity": {
         "{stem}.metagraph": "the clips; the package makes the character of it",
+        "*Character.cs": "a class of the parameters that a game sets, with their types",
         "{stem}.humanoid.json": "the bones of a humanoid, for retargeting",
         "{stem}.glb": "the character's mesh, which Unity imports with glTFast or UnityGLTF",
         "Metagraph/": "the package; its README has all calls",
@@ -99,15 +105,17 @@ def describe_files(target: str, stem: str, names: Iterable[str]) -> list[tuple[s
         for pattern, words in {**SHARED, **FILES.get(target, {})}.items()
     }
     order = [*(p for p in known if "*" not in p), *(p for p in known if "*" in p)]
-    found: dict[str, tuple[str, int]] = {}
+    found: dict[str, list[str]] = {}
+    words: dict[str, str] = {}
     for name in sorted(names):
         parts = PurePosixPath(name).parts
         top = f"{parts[0]}/" if len(parts) > 1 else name
         fitting = next((p for p in order if top == p or ("*" in p and fnmatchcase(top, p))), None)
         key = fitting if fitting is not None and "*" in fitting else top
-        words = known[fitting] if fitting is not None else ""
-        found[key] = (words, found[key][1] + 1 if key in found else 1)
-    return [
-        (key, f"{words}; {count} files" if count > 1 and words else words or (f"{count} files" * (count > 1)))
-        for key, (words, count) in found.items()
-    ]
+        found.setdefault(key, []).append(top)
+        words[key] = known[fitting] if fitting is not None else ""
+    out = []
+    for key, tops in found.items():
+        several = f"{len(tops)} files" if len(tops) > 1 else ""
+        out.append((key if several else tops[0], "; ".join(w for w in (words[key], several) if w)))
+    return out

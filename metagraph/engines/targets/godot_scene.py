@@ -114,10 +114,6 @@ importer="scene"
 importer_version=1
 type="PackedScene"
 
-[deps]
-
-source_file=""
-
 [params]
 
 nodes/root_type=""

@@ -115,11 +115,17 @@ STEPS: Mapping[str, NextSteps] = {
         ),
         "engines/cpp",
         "cpp",
+        "#include <fstream>\n#include <iostream>\n#include <iterator>\n\n"
         '#include "metagraph/metagraph.hpp"\n\n'
-        "// json and glb are the bytes of {stem}.json and {stem}.glb\n"
-        'const metagraph::Loaded loaded = metagraph::load(json, glb, size, "{stem}.json");\n'
-        "metagraph::Character character(loaded.graph);\n"
-        'character.ask(R"({"do": "gesture", "after": 1})");\n',
+        "std::string bytes(const char* path) {\n"
+        "    std::ifstream in(path, std::ios::binary);\n"
+        "    return std::string(std::istreambuf_iterator<char>(in), {});\n}\n\n"
+        'int main() {\n    const std::string json = bytes("{stem}.json"), glb = bytes("{stem}.glb");\n'
+        "    const auto* data = reinterpret_cast<const std::uint8_t*>(glb.data());\n"
+        '    const metagraph::Loaded loaded = metagraph::load(json, data, glb.size(), "{stem}.json");\n'
+        "    metagraph::Character character(loaded.graph);\n"
+        '    character.ask(R"({"do": "gesture"})");\n    character.update(1.0);\n'
+        '    std::cout << character.pose()[0].translation.y << "\\n";\n}\n',
     ),
     "unreal": NextSteps(
         (
@@ -139,6 +145,10 @@ STEPS: Mapping[str, NextSteps] = {
             phrase("Make requests with the numbers of '{stem}.numbers.json'."),
         ),
         "engines/playcanvas",
+        "js",
+        'entity.anim.setInteger("arms_stance", STANCE);  // go to a stance\n'
+        'entity.anim.setInteger("arms_action", ACTION);  // play an action ...\n'
+        'entity.anim.setTrigger("arms_play");  // ... once\n',
     ),
     "godot-tree": NextSteps(
         (
@@ -156,6 +166,11 @@ STEPS: Mapping[str, NextSteps] = {
             phrase("Send it the events of '{stem}.events.json'."),
         ),
         "engines/gltf-interactivity",
+        "js",
+        "// Babylon.js, once the GLB is in the scene\n"
+        'import { FlowGraphCoordinator } from "@babylonjs/core/FlowGraph/flowGraphCoordinator.js";\n\n'
+        "const [coordinator] = FlowGraphCoordinator.SceneCoordinators.get(scene);\n"
+        "coordinator.notifyCustomEvent(EVENT, {});\n",
     ),
     "xstate": NextSteps(
         (
@@ -165,6 +180,12 @@ STEPS: Mapping[str, NextSteps] = {
             phrase("In 'play', start the animation of that name from '{stem}.glb'."),
         ),
         "engines/state-charts",
+        "js",
+        'import { readFileSync } from "node:fs";\nimport { createActor, createMachine } from "xstate";\n\n'
+        'const chart = JSON.parse(readFileSync("{stem}.xstate.json", "utf8"));\n'
+        "const play = (_, { animation, loop }) => console.log(animation, loop);\n"
+        "const missed = ({ event }) => console.log(event.type, 'does not fit now');\n"
+        "createActor(createMachine(chart).provide({ actions: { play, missed } })).start();\n",
     ),
     "scxml": NextSteps(
         (
@@ -180,6 +201,11 @@ STEPS: Mapping[str, NextSteps] = {
     "vrm": NextSteps(
         (phrase("Load '{stem}.vrm' in a program that reads VRM 1.0."),),
         "engines/vrm",
+        "js",
+        'import { VRMLoaderPlugin } from "@pixiv/three-vrm";\n'
+        'import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";\n\n'
+        "const loader = new GLTFLoader();\nloader.register((parser) => new VRMLoaderPlugin(parser));\n"
+        'const { vrm } = (await loader.loadAsync("{stem}.vrm")).userData;\nscene.add(vrm.scene);\n',
     ),
     "vrma": NextSteps(
         (
@@ -190,14 +216,30 @@ STEPS: Mapping[str, NextSteps] = {
             ),
         ),
         "engines/vrm",
+        "js",
+        'import { createVRMAnimationClip, VRMAnimationLoaderPlugin } from "@pixiv/three-vrm-animation";\n'
+        'import { AnimationMixer } from "three";\n'
+        'import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";\n\n'
+        "const loader = new GLTFLoader();\n"
+        "loader.register((parser) => new VRMAnimationLoaderPlugin(parser));\n"
+        "const { vrmAnimations } = (await loader.loadAsync(FILE)).userData;\n"
+        "const mixer = new AnimationMixer(vrm.scene);\n"
+        "mixer.clipAction(createVRMAnimationClip(vrmAnimations[0], vrm)).play();\n",
     ),
     "usd": NextSteps(
         (phrase("Open '{stem}.usda'. The variant set 'clip' chooses the clip that plays."),),
         "engines/usd",
+        "python",
+        "from pxr import Usd\n\n"
+        'stage = Usd.Stage.Open("{stem}.usda")\n'
+        'clips = stage.GetDefaultPrim().GetVariantSets().GetVariantSet("clip")\n'
+        "print(clips.GetVariantNames())\n",
     ),
     "smartbody": NextSteps(
         (phrase("Load the motions of 'motions/', then run '{stem}_gestures.py'."),),
         "engines/bml-systems",
+        "python",
+        'scene.addAssetPath("motion", "motions")\nscene.loadAssets()\nscene.run("{stem}_gestures.py")\n',
     ),
     "sumerian": NextSteps(
         (phrase("Give 'gesture.json' to the host, and load its animations from '{stem}.glb'."),),
@@ -233,5 +275,5 @@ def make_readme(
     lines += ["|---|---|"]
     lines += [f"| `{name}` | {words} |" for name, words in describe_files(target, stem, files)]
     lines += ["", "## What is lost", ""]
-    lines += [f"- {loss}" for loss in losses] or ["Nothing."]
+    lines += [f"- {loss[:1].upper()}{loss[1:]}." for loss in losses] or ["Nothing."]
     return "\n".join(lines) + "\n"

@@ -92,8 +92,9 @@ def make_wrapper(project: Project, stem: str, language: str) -> Mapping[str, str
 
 def make_class_name(project: Project) -> str:
     """Return the name of the class: the project's name and "Character"."""
-    word = make_word(project.name, (), "exported")
-    return _write_pascal(word) + ("" if word == "character" or word.endswith("_character") else "Character")
+    word = make_word(project.name, (), "exported").removesuffix("_character")
+    own = "exported" if word in ("character", "metagraph") else word  # others have these names
+    return f"{_write_pascal(own)}Character"
 
 
 def _write_pascal(word: str) -> str:

@@ -42,13 +42,14 @@ PARTNER = (0.0, 1.6, 1.2)  # metres: where a partner stands until a game says ot
 class OfferedParameter:
     """A parameter that can be added. group: "state" for what lasts, "gesture", "action" or "line" for
     triggers. words: what it sets, in words; of an action or a line its own name. name: what it is called at
-    first.
+    first. under: of an action, the layer and the stance that it is in.
     """
 
     group: str
     words: str
     name: str
     parameter: CharacterParameter
+    under: tuple[str, str] = ("", "")
 
 
 def add_parameter(project: Project, name: str, parameter: CharacterParameter) -> tuple[Project, str]:
@@ -114,7 +115,9 @@ def list_offered_parameters(project: Project) -> list[OfferedParameter]:
     for action in project.actions():
         if action.kind in ("gesture", "fidget"):
             play = Play(action=action.id, layer=action.layer)
-            out.append(_make_trigger("action", action.name, action.name, play))
+            stance = project.stance(action.stance)
+            under = (action.layer, stance.name if stance is not None else "")
+            out.append(replace(_make_trigger("action", action.name, action.name, play), under=under))
     for ident, line in project.lines.items():
         text = line.text or ident
         short = text if len(text) <= 60 else f"{text[:57]}…"

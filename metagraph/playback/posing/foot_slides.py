@@ -151,7 +151,7 @@ class FeetWatch:
         self._height = rig.height if rig is not None else project.skeleton.height if project.skeleton else 1.0
         layer = weight.feet_layer if weight is not None else None
         steps = plan is not None and has_planted_feet(project) and rig is not None
-        self._layer = layer or "body"
+        self.layer = layer or "body"
         rows = partial(find_foot_rows, weight) if steps and weight is not None else None
         self._goals = FeetOfPlan(rows, self._height, layer) if rows and layer else None
         self._floor: Array | None = None
@@ -215,7 +215,7 @@ class FeetWatch:
         if self._floor is None:
             assert self.project.skeleton is not None
             motion = self._clip
-            rests = self.plan.layers[self._layer].rests if self.plan is not None else ()
+            rests = self.plan.layers[self.layer].rests if self.plan is not None else ()
             if motion is None and rests:
                 motion = find_playable_motion(self.project, rests[0].action)
             if motion is not None:
@@ -233,7 +233,7 @@ class FeetWatch:
             return out
         for n, time in enumerate(times.tolist()):
             for side, goal in enumerate(self._goals.goals(self.plan, self.project, time)):
-                out[n, side] = goal.lift > STEPS
+                out[n, side] = goal.lift * goal.planted > STEPS
         return out
 
 

@@ -126,7 +126,10 @@ def _stepped(
     """
     if len(before) == 0 or len(after) == 0 or len(first) == 0 or len(last) == 0:
         return []
-    ways = [foot_way(first[side], last[side]) for side in range(2)]
+    ways: list[float] = []
+    for side in range(2):  # a foot that does not stand before or after needs no time for a step
+        stands = first[side].planted * last[side].planted
+        ways.append(stands * foot_way(first[side], last[side]))
     part = 0.5
     if ways[0] + ways[1] > 0.0:
         part = min(max(ways[0] / (ways[0] + ways[1]), LEAST_PART), 1.0 - LEAST_PART)

@@ -2,15 +2,18 @@
 
 A set of takes often lacks a transition. Without it a stance is never reached and all its gestures never play.
 A bridge is a transition that plays the loop of the stance it ends in and takes long to blend into it; if that
-is too short, the loop of the stance it leaves, and takes long to blend out of it. It takes so long that no
-joint goes faster on average than it usually goes in the clips: at its fastest, half as fast again. No bridge
-is made where the body would slide or turn on the spot, or if there is no time for the distance.
+is too short, the loop of the stance it leaves, and takes long to blend out of it; if that is too short as
+well, a copy of the clip that is held in the moment of the loop. It takes so long that no joint goes faster on
+average than it usually goes in the clips: at its fastest, half as fast again. The hips go over the floor no
+faster than they usually do even at their fastest, if there is time: a body that shifts its weight takes a
+second for a hand's breadth. No bridge is made where the body would slide or turn on the spot, or if there is
+no time for the distance.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import atan2, degrees
 from typing import Any
@@ -19,10 +22,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.wording import Phrase, phrase
-from metagraph.graph import anatomy, edits
+from metagraph.graph import anatomy, edits, ids
 from metagraph.graph.checks.end_gaps import TALL, find_reached_joints, get_action_motion
+from metagraph.graph.clip_source import get_clip_course, get_source_clip, with_source
 from metagraph.graph.expand import find_reachable
 from metagraph.graph.model import LAYERS, Action, Layer, MetaGraph, Project
+from metagraph.motion.retime import RAMP, Hold, Retime
+from metagraph.playback.own_moves import SHIFTS
 from metagraph.playback.posing.composer import find_composer, find_playable_motion
 from metagraph.playback.posing.layers import sample_offsets
 
@@ -36,12 +42,14 @@ HASTY = 2.0  # metres a second, on average, above which a movement looks thrown
 CALM = 0.4  # metres a second, on average, that every joint may go, even where it hardly moves in the clips
 USUAL = 99.0  # the percentile of a joint's speeds in the clips that is how fast it usually goes
 PEAK = 1.5  # times its average speed that a joint goes in the middle of a blend
+SHIFT = 0.15  # metres a second, at its fastest, that the body may go over the floor, however still the clips
 LOOKS, MOMENT = 8.0, 1 / 60  # a second, at which speeds in clips are measured, and the seconds each takes
 AWAY = 0.3  # metres over the floor that a body may slide on a bridge
 TURNED = 45.0  # degrees that it may turn on one
 FADE = 0.25  # of a bridge, that it takes to blend into or out of the loop that it is of
 CAREFUL = 0.9  # seconds of a bridge by a moment of a clip that moves before and after it, at least
 STILL = 0.2  # seconds, below which a clip is too short to be blended over
+HELD = 0.25  # of a bridge that is held in a moment, that its shorter blend takes
 
 
 @dataclass(frozen=True)
@@ -220,7 +228,15 @@ def _refusal(project: Project, one: _Rest, other: _Rest) -> Phrase | None:
         return phrase("the body would turn by {angle:.0f} degrees on the spot", angle=turned)
     course = _course(project, one, other)
     if course.hurry <= 1.001:
-        return None
+        most = max(SHIFTS * size, PEAK * one.pace.usual_shift)
+        if PEAK * away <= 1.001 * most * course.seconds:
+            return None
+        return phrase(
+            "the body would slide {length:.0f} cm at {speed:.1f} m/s. Add a clip that leads there, or a "
+            "longer loop.",
+            length=100 * away,
+            speed=PEAK * away / max(1e-6, course.seconds),
+        )
     joint, limit = course.joint, float(one.pace.limits[course.joint])
     if limit < HASTY * size:
         return phrase(
@@ -248,12 +264,22 @@ class _Pace:
         assert project.skeleton is not None
         self.project, self.skeleton = project, project.skeleton
 
-    @cached_property
+    @property
     def limits(self) -> Array:
         """How fast each joint may go on average, `[J]` m/s: as fast as it usually goes in what plays. Only
         HASTY limits it if nothing but loops plays.
         """
-        size, speeds = _size(self.project), []
+        return self._found[0]
+
+    @property
+    def usual_shift(self) -> float:
+        """How fast the hips usually go over the floor in what plays, m/s; SHIFT where that is more."""
+        return self._found[1]
+
+    @cached_property
+    def _found(self) -> tuple[Array, float]:
+        size, speeds, shifts = _size(self.project), [], []
+        hips = anatomy.project_roles(self.project).get("hips", 0)
         moves = False
         for action in self.project.actions():
             clip = find_playable_motion(self.project, action)
@@ -264,10 +290,12 @@ class _Pace:
             times = np.arange(start, end - MOMENT, 1 / LOOKS)
             first, second = (clip.skeleton.globals(clip.pose_at(t))[1] for t in (times, times + MOMENT))
             speeds.append(np.linalg.norm(second - first, axis=-1) / MOMENT)
+            shifts.append(np.linalg.norm((second - first)[:, hips][:, (0, 2)], axis=-1) / MOMENT)
         if not moves:
-            return np.full(len(self.skeleton), HASTY * size)
+            return np.full(len(self.skeleton), HASTY * size), SHIFT * size
         usual = np.percentile(np.concatenate(speeds), USUAL, axis=0)
-        return np.asarray(np.clip(usual, CALM * size, HASTY * size))
+        shift = float(np.percentile(np.concatenate(shifts), USUAL))
+        return np.clip(usual, CALM * size, HASTY * size), max(SHIFT * size, shift)
 
 
 @dataclass(frozen=True, eq=False)
@@ -277,7 +305,7 @@ class _Rest:
     `places` `[J, 3]`, metres, are those that its layer alone gives the joints. `joints` are
     those that the layer moves. `hips` `[2]`, metres, on the floor. `heading`: where the hips face, degrees.
     `on_legs`: whether the layer moves the legs. `span`: of the loop, seconds of its clip, which has `room`
-    seconds.
+    seconds. `holds`: whether a copy of the clip can be held in a moment of the loop.
     """
 
     loop: Action
@@ -288,6 +316,7 @@ class _Rest:
     on_legs: bool
     span: tuple[float, float]
     room: float
+    holds: bool
     pace: _Pace
 
 
@@ -317,6 +346,7 @@ def _poses(project: Project, graph: MetaGraph) -> dict[str, _Rest]:
                 graph.weight("legs") > 0,
                 span,
                 motion.duration,
+                motion.frames > 1 and project.clips[loop.clip].retime.plain,
                 pace,
             )
     return out
@@ -338,6 +368,7 @@ def _metres(one: _Rest, other: _Rest) -> float:
 class _Course:
     """What a bridge plays: seconds first to last of the loop that it leaves (leaving) or enters, and which
     share of them its short blend takes. hurry: how fast the fastest joint goes, as a multiple of its limit.
+    held: the loop's moment that is held all the while; None if its clip goes on.
     """
 
     leaving: bool
@@ -346,14 +377,28 @@ class _Course:
     fade: float
     joint: int
     hurry: float
+    held: float | None = None
+
+    @property
+    def seconds(self) -> float:
+        """How long the long blend takes."""
+        return (self.last - self.first) * (1 - self.fade)
 
 
 def _course(project: Project, start: _Rest, end: _Rest) -> _Course:
     ways = _ways(start, end)
     needs = ways / start.pace.limits  # seconds of the long blend
-    least = max(float(ways.max()) / (SPEED * _size(project)), float(needs.max()) / (1 - FADE))
+    shift = float(np.linalg.norm(start.hips - end.hips)) if start.on_legs else 0.0
+    calm = PEAK * shift / start.pace.usual_shift
+    least = max(float(ways.max()) / (SPEED * _size(project)), max(float(needs.max()), calm) / (1 - FADE))
     seconds, fade = float(np.clip(least, SHORTEST, LONGEST)), FADE
-    leaving = end.room < min(seconds, start.room)
+    joint = int(needs.argmax())
+    loops = [rest.span[1] - rest.span[0] for rest in (start, end)]
+    if max(loops) < seconds and (rest := end if end.holds else start).holds:
+        hurry = float(needs[joint]) / (seconds * (1 - HELD))
+        moment = sum(rest.span) / 2
+        return _Course(rest is start, 0.0, seconds, HELD, joint, hurry, moment)
+    leaving = end.room < min(seconds, start.room) or loops[1] < seconds <= loops[0]
     begins, ends = start.span if leaving else end.span
     room = start.room if leaving else end.room
     if ends - begins < min(seconds, room):  # the moment itself is where neither blend is
@@ -361,7 +406,6 @@ def _course(project: Project, start: _Rest, end: _Rest) -> _Course:
         begins = max(0.0, (begins + ends - seconds) / 2)
     first = max(0.0, min(begins, room - seconds))
     last = min(first + seconds, room)
-    joint = int(needs.argmax())
     hurry = float(needs[joint]) / max(1e-6, (last - first) * (1 - fade))
     return _Course(leaving, first, last, fade, joint, hurry)
 
@@ -376,7 +420,11 @@ def _bridge(
     stance = project.stance(end)
     assert stance is not None
     course = _course(project, poses[start], poses[end])
-    clip = poses[start if course.leaving else end].loop.clip
+    kept = start if course.leaving else end
+    clip = poses[kept].loop.clip
+    if course.held is not None:
+        project, clip, first = _hold(project, clip, course, kept)
+        course = replace(course, first=first, last=first + course.last)
     project = edits.place_clips(project, [clip], stance.layer, "transition", start, end)
     made = list(project.graphs[stance.layer].actions)[-1]
     seconds = course.last - course.first
@@ -389,3 +437,31 @@ def _bridge(
     }
     project = edits.update_actions(project, [made], timing=timing, name=f"to {stance.name}, blended")
     return project, Bridge(made, start, end, metres, seconds)
+
+
+def _hold(project: Project, clip: str, course: _Course, stance: str) -> tuple[Project, str, float]:
+    """Return the project with a copy of a clip that is held in a moment for as long as a bridge takes, the
+    copy's id, and when the hold begins. A copy that is there, and held as long, is used again.
+    """
+    entry, kept = project.clips[clip], project.stance(stance)
+    assert entry.motion is not None and course.held is not None and kept is not None
+    source = get_source_clip(entry)
+    assert source is not None
+    seconds = round(course.last - course.first, 3) + 2 * RAMP
+    held = Retime(holds=(Hold(round(course.held, 3), seconds),)).kept(source.duration)
+    for other in project.clips.values():
+        same = (other.path, other.take, other.turned, other.moved_x, other.moved_z, other.in_place) == (
+            *(entry.path, entry.take, entry.turned, entry.moved_x, entry.moved_z),
+            entry.in_place,
+        )
+        if same and other.retime == held:
+            copy = other
+            break
+    else:
+        made = ids.make_id(project, "c", entry.path, entry.take, "held", stance)
+        copy = with_source(replace(entry, id=made, name=f"{kept.name}, held", retime=held), source)
+        project = replace(project, clips={**project.clips, made: copy})
+    found = get_clip_course(copy)
+    assert found is not None
+    first, last = found.stays[0]
+    return project, copy.id, (first + last - (course.last - course.first)) / 2

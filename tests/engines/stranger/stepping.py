@@ -38,9 +38,10 @@ def row(character: Character, action: dict[str, Any], second: float) -> Feet | N
 
 
 def way(a: Foot, b: Foot) -> float:
-    """ "Steps"."""
+    """ "Steps", of A0 and B1."""
     distance = float(np.linalg.norm(b.place - a.place))
-    return distance + 0.3 * sqrt(max(0.0, 2.0 - 2.0 * abs(float(a.turn @ b.turn))))
+    turn = 0.3 * sqrt(max(0.0, 2.0 - 2.0 * abs(float(a.turn @ b.turn))))
+    return a.stands * b.stands * (distance + turn)
 
 
 def step(height: float, seconds: float, *feet: Any) -> Feet | None:

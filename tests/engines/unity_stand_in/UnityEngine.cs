@@ -17,6 +17,11 @@ namespace UnityEngine
         public HideFlags hideFlags;
         public static readonly List<Object> destroyed = new List<Object>();
         public static void Destroy(Object one) { destroyed.Add(one); }
+        public static void DestroyImmediate(Object one)
+        {
+            var component = (Component)one;
+            component.gameObject.components.Remove(component);
+        }
         public static T Instantiate<T>(T one) where T : Object { return one; }
         public static bool operator ==(Object a, Object b) { return ReferenceEquals(a, b); }
         public static bool operator !=(Object a, Object b) { return !ReferenceEquals(a, b); }
@@ -87,6 +92,7 @@ namespace UnityEngine
         public Vector3 localPosition;
         public Vector3 InverseTransformPoint(Vector3 world) { return world; }
     }
+    public class Animation : Behaviour { }
     public class Animator : Behaviour
     {
         public Avatar avatar;
@@ -218,18 +224,9 @@ namespace UnityEngine.Animations
             return new AnimationScriptPlayable { job = job };
         }
     }
-    public enum AnimationStreamSource { DefaultValues, PreviousInputs }
     public struct AnimationPlayableOutput
     {
         public static AnimationPlayableOutput Create(PlayableGraph graph, string name, Animator target) { return new AnimationPlayableOutput(); }
-    }
-    public static class AnimationPlayableOutputExtensions
-    {
-        public static AnimationStreamSource source;
-        public static int order;
-        public static void SetAnimationStreamSource(this AnimationPlayableOutput output, AnimationStreamSource from) { source = from; }
-        public static void SetSortingOrder(this AnimationPlayableOutput output, ushort place) { order = place; }
-        public static void SetSourcePlayable(this AnimationPlayableOutput output, AnimationScriptPlayable playable) { PlayableGraph.jobs.Add(playable.job); }
     }
 }
 
@@ -248,5 +245,21 @@ namespace UnityEngine.Playables
         public void Destroy() { playing--; valid = false; }
         /// What Unity does to all graphs between Update and LateUpdate.
         public static void Evaluate() { jobs.ForEach(job => job.ProcessAnimation(new UnityEngine.Animations.AnimationStream())); }
+    }
+}
+
+namespace UnityEngine.Experimental.Animations
+{
+    using UnityEngine.Animations;
+    using UnityEngine.Playables;
+
+    public enum AnimationStreamSource { DefaultValues, PreviousInputs }
+    public static class AnimationPlayableOutputExtensions
+    {
+        public static AnimationStreamSource source;
+        public static int order;
+        public static void SetAnimationStreamSource(this AnimationPlayableOutput output, AnimationStreamSource from) { source = from; }
+        public static void SetSortingOrder(this AnimationPlayableOutput output, ushort place) { order = place; }
+        public static void SetSourcePlayable(this AnimationPlayableOutput output, AnimationScriptPlayable playable) { PlayableGraph.jobs.Add(playable.job); }
     }
 }

@@ -366,8 +366,13 @@ struct FAnimInstanceProxy {
     virtual void CacheBones() {}
     virtual bool Evaluate(FPoseContext&) { return false; }
 };
+namespace UE { namespace Anim {
+enum class ECurveElementFlags { None = 0, MorphTarget = 1 };
+} }
 struct FBlendedCurve {
     std::map<FName, float> Values;
+    std::map<FName, UE::Anim::ECurveElementFlags> Flags;
+    void SetFlags(const FName& name, UE::Anim::ECurveElementFlags flags) { Flags[name] = flags; }
     void Set(const FName& name, float value) { Values[name] = value; }
     float Get(const FName& name) const { return Values.count(name) ? Values.at(name) : 0.0f; }
 };

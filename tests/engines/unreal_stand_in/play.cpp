@@ -151,6 +151,15 @@ static int Play(UMetagraphAsset& asset) {
     std::cout << "asked";
     for (const FString& id : asked) std::cout << " " << FTCHARToUTF8(*component.Answer(id).State).Get();
     std::cout << "\n";
+    const FString set[] = {
+        component.SetParameterNumber(FString(u"energy"), 1.5f), component.SetParameterSwitch(FString(u"speaking"), true),
+        component.SetParameterChoice(FString(u"mood"), FString(u"happy")), component.SetParameterChoices(FString(u"gesture_with"), TArray<FString>({FString(u"positive")})),
+        component.SetParameterPoint(FString(u"partner"), FVector(1100, 200, 150)), component.PlayParameter(FString(u"blink")), component.PlayParameter(FString(u"mood")),
+    };
+    for (int frame = 0; frame < 10; frame++) component.TickComponent(0.02f, LEVELTICK_All, nullptr);
+    std::cout << "set";
+    for (const FString& id : set) std::cout << " " << FTCHARToUTF8(*component.Answer(id).State).Get();
+    std::cout << "\n";
     return 0;
 }
 
@@ -213,7 +222,32 @@ static int Drive(UMetagraphAsset& asset) {
     for (int32 n = 0; n < component.Pose()->Curves.Num(); n++) {
         wrong += std::abs(half.Curve.Get(component.Pose()->Curves[n]) - component.Pose()->Weights[n] / 2);
     }
+    for (const auto& one : half.Curve.Flags) wrong += one.second != UE::Anim::ECurveElementFlags::MorphTarget;
+    wrong += half.Curve.Flags.size() != half.Curve.Values.size();
     std::cout << "face " << (moved == 0 && wrong < 1e-6 ? "alone" : "wrong") << " " << component.Pose()->Curves.Num() << "\n";
+    return 0;
+}
+
+/// Parameters of the project as a game sets them.
+static int Parameters(UMetagraphAsset& asset) {
+    AActor actor;
+    UMetagraphComponent component;
+    component.Owner = &actor;
+    const auto word = [](const FString& text) { return std::string(FTCHARToUTF8(*text).Get()); };
+    std::cout << "before " << word(component.SetParameterSwitch(FString(u"x"), true)).empty() << word(component.Parameter(FString(u"energy"))).empty() << "\n";
+    component.Asset = &asset;
+    component.BeginPlay();
+    const FString asked[] = {
+        component.SetParameterChoice(FString(u"mood"), FString(u"happy")), component.SetParameterNumber(FString(u"energy"), 0.5f),
+        component.PlayParameter(FString(u"nod")), component.SetParameterPoint(FString(u"partner"), FVector(100, 200, 150)), component.SetParameterSwitch(FString(u"listening"), true),
+        component.SetParameterChoices(FString(u"gesture_with"), TArray<FString>({FString(u"greeting")})),
+        component.SetParameterChoices(FString(u"mood"), TArray<FString>({FString(u"happy")})), component.SetParameterSwitch(FString(u"mood"), true),
+        component.SetParameterChoice(FString(u"nobody"), FString(u"x")),
+    };
+    component.TickComponent(0.02f, LEVELTICK_All, nullptr);
+    std::cout << "set";
+    for (const FString& id : asked) std::cout << " " << word(component.Answer(id).State);
+    std::cout << "\nvalues " << word(component.Parameter(FString(u"mood"))) << " " << word(component.Parameter(FString(u"energy"))) << "\n";
     return 0;
 }
 
@@ -231,7 +265,7 @@ int main(int, char** words) {
         return 3;
     }
     UMetagraphAsset& asset = static_cast<UMetagraphAsset&>(*made);
-    const int out = what == "vectors" ? Vectors(words[3], asset) : what == "play" ? Play(asset) : what == "drive" ? Drive(asset) : 0;
+    const int out = what == "vectors" ? Vectors(words[3], asset) : what == "play" ? Play(asset) : what == "drive" ? Drive(asset) : what == "parameters" ? Parameters(asset) : 0;
     delete made;
     return out;
 }

@@ -360,7 +360,7 @@ def away(found: Schedule, end: float = HOUR) -> tuple[float, float, float]:
 
 
 @pytest.mark.parametrize(
-    ("mode", "rate", "length"), [("talking", 12.6, 1.95), ("listening", 10.2, 1.4), ("idle", 13.2, 2.2)]
+    ("mode", "rate", "length"), [("talking", 16.2, 2.14), ("listening", 12.0, 1.4), ("idle", 13.2, 2.2)]
 )
 def test_the_gaze_is_averted_as_often_and_as_long_as_documented(
     mode: Any, rate: float, length: float
@@ -369,11 +369,12 @@ def test_the_gaze_is_averted_as_often_and_as_long_as_documented(
     assert often == pytest.approx(rate, rel=0.08) and long == pytest.approx(length, rel=0.08)
 
 
-def test_a_listener_looks_more_than_a_speaker_and_a_speaker_more_than_an_idler() -> None:
+def test_a_listener_looks_more_than_an_idler_and_a_speaker_least() -> None:
     shares = [
-        away(drawn(track_of([ModeFrom("m", 0, mode)]), HOUR))[2] for mode in ("listening", "talking", "idle")
+        away(drawn(track_of([ModeFrom("m", 0, mode)]), HOUR))[2] for mode in ("listening", "idle", "talking")
     ]
-    assert shares == sorted(shares) and 0.2 < shares[0] < 0.3 and 0.35 < shares[1] < 0.6 and shares[2] < 0.6
+    assert shares == sorted(shares) and 0.2 < shares[0] < 0.3
+    assert 0.4 < shares[1] < 0.55 and 0.52 < shares[2] < 0.6
 
 
 def test_aversions_never_meet_and_never_begin_during_a_strict_look() -> None:

@@ -13,9 +13,10 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Play
 from metagraph.playback.continuity import RATE, ContinuityLaw
 from metagraph.playback.evaluator import WEIGHT, Evaluator
-from metagraph.playback.plan import MetaRequest, Plan
+from metagraph.playback.plan import Cue, LayerPlan, MetaRequest, Plan, Rest
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.running_plan import plan_performance
+from metagraph.playback.posing.planted_feet import FootTrack, foot_goals
 from metagraph.playback.posing.weight import find_foot_rows
 from sample_clips.make.conformance_projects import stepping
 from tests.posing import pose_at, weight_of
@@ -182,3 +183,24 @@ def test_feet_of_a_fidget_that_is_cut_short_glide_rather_than_jump(name: str, se
     times = np.arange(0.9, 1.1 + seconds, 1 / RATE)
     added = ContinuityLaw(of).added(Evaluator(plan, of).stages(times))
     assert added[WEIGHT].breaks.max() < 1.0
+
+
+def test_a_foot_that_does_not_stand_leaves_the_time_for_a_step_to_the_other() -> None:
+    made = stepping()
+    body = made.graphs["body"]
+    loop = next(a for a in body.actions.values() if a.kind == "stance")
+    far = next(a for a in body.actions.values() if a.name == "near")
+    stands = [100000.0, 10000.0, 0.0, 0.0, 0.0, 0.0, 0.0, 100000.0]
+    lifted = [0.0, -10000.0, 5000.0, 0.0, 0.0, 0.0, 0.0, 100000.0]
+    aside = [100000.0, 16000.0, 0.0, 0.0, 0.0, 0.0, 0.0, 100000.0]
+    down = [100000.0, -22000.0, 0.0, 0.0, 0.0, 0.0, 0.0, 100000.0]
+    rests = (Rest(loop.stance, loop, 0.0, 0.0, 0.0),)
+    cue = Cue(far, 2.0, 4.0, 0.0, 0.24, 0.24, loop.stance, loop.stance, "r")
+    plan = LayerPlan("body", cues=(cue,), rests=rests)
+    tracks = {loop.id: FootTrack([aside + down]), far.id: FootTrack([stands + lifted])}
+    lasts = 0.24
+    goals = [foot_goals(made, tracks, 1.6, plan, cue, 0, t)[0] for t in np.arange(4.0 - lasts, 4.0, 1 / 240)]
+    places = np.array([goal.at[0] for goal in goals])
+    assert np.abs(np.diff(places)).max() * 240 < 2.1 * 0.06 / (
+        0.85 * lasts
+    )  # not in the third that the other's way left

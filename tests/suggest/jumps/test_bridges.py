@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from metagraph.graph import edits
 from metagraph.graph.check import check_project
+from metagraph.graph.editing import retiming
 from metagraph.graph.expand import find_reachable
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import Play
@@ -23,9 +24,9 @@ from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.suggest.accept import accept
 from metagraph.suggest.jumps.bridges import (
     CALM,
-    CAREFUL,
     HASTY,
     LONGEST,
+    SHIFT,
     SHORTEST,
     SPEED,
     bridge_all,
@@ -291,11 +292,15 @@ def test_no_bridge_throws_the_hands() -> None:
     project = edits.add_clips(Project("p"), [(f"{c.name}.glb", 0, "", c) for c in clips])
     for clip in clips:
         project = edits.add_stance(project, "arms", clip.name, [TOY.id(project, clip.name)])
-    assert bridge_all(project) == (project, ())
-    (line,) = describe_unbridged(project)
+    fast = project
+    for clip in project.clips:  # what plays at another speed is not held
+        fast = retiming.set_speed(fast, clip, 1.01)
+    assert bridge_all(fast) == (fast, ())
+    (line,) = describe_unbridged(fast)
     assert "both loops are too short" in line and "would look like a jolt" in line
+    _, held = bridge_all(used(project))
     _, made = bridge_all(stances(3))
-    assert all(x.metres / x.seconds < HASTY for x in made)
+    assert len(held) == 2 and all(x.metres / x.seconds < HASTY for x in (*held, *made))
 
 
 def among_calm_clips(seconds: float, height: float) -> Project:
@@ -331,10 +336,12 @@ def test_a_bridge_takes_as_long_as_its_slowest_joint_needs_by_the_clips() -> Non
 
 
 def test_no_bridge_is_made_where_a_joint_had_to_go_faster_than_in_the_clips() -> None:
-    project = among_calm_clips(1.0, 0.7)
+    _, made = bridge_all(among_calm_clips(1.0, 0.7))
+    assert len(made) == 2 and all(x.seconds > 0.7 / SPEED * 1.3 for x in made)  # held for so long
+    project = among_calm_clips(1.0, 1.4)
     assert bridge_all(project) == (project, ())
     (line,) = describe_unbridged(project)
-    assert "moves at 1.4 m/s, but at most at 0.6 m/s in the clips" in line
+    assert "moves at 0.9 m/s, but at most at 0.6 m/s in the clips" in line
 
 
 def test_between_single_poses_there_is_nothing_to_blend() -> None:
@@ -347,22 +354,77 @@ def test_between_single_poses_there_is_nothing_to_blend() -> None:
 
 
 @pytest.mark.parametrize(("start", "end"), [(0.0, 0.3), (0.1, 0.4), (1.9, 2.2), (3.6, 4.0)])
-def test_a_bridge_by_a_moment_of_a_longer_clip_shows_that_moment_where_it_blends_least(
+def test_a_bridge_between_moments_holds_one_of_them_and_shows_nothing_else_of_its_clip(
     start: float, end: float
 ) -> None:
-    project = stances(1)
+    project = stances(1, seconds=0.5)
     wave = TOY.clip("wave", 4.0, ANGLES[2], swing=1.5)
     project = edits.add_clips(project, [("wave.glb", 0, "", wave)])
     project = edits.add_stance(project, "arms", "held", [TOY.id(project, "wave")])
     held = list(project.graphs["arms"].actions)[-1]
     project = edits.update_actions(project, [held], timing={"start": start, "end": end, "loop": True})
     after, made = bridge_all(used(project))
-    into = after.action(made[0].action)
-    assert into is not None and into.timing.end is not None
-    assert into.timing.end - into.timing.start >= CAREFUL - 2e-3
-    middle = (into.timing.start + into.timing.end) / 2
-    assert start <= middle <= end or into.timing.start == 0 or into.timing.end == 4.0
-    assert into.timing.blend_in == pytest.approx(into.timing.blend_out, abs=2e-3)
+    into, out = (after.action(x.action) for x in made)
+    assert into is not None and out is not None and into.timing.end is not None
+    assert into.timing.blend_in > 2 * into.timing.blend_out > 0 and out.timing.blend_in > 0
+    copy = after.clips[into.clip]
+    assert copy.name == "held, held" and copy.path == "wave.glb" and copy.motion is not None
+    played = copy.motion.pose_at(np.linspace(*after.span(into), 20)).rotations
+    moment = wave.pose_at((start + end) / 2).rotations
+    assert np.abs(played - moment).max() < 2e-3
+    assert len(after.clips) <= len(project.clips) + 2  # each is held where it blends in
+    assert not [p for p in check_project(after) if p.action in (into.id, out.id)]
+
+
+def shifted_talkers(metres: float, held: bool) -> Project:
+    """Two stances whose bodies stand apart, the second held in the first frame of a gesture, or with a loop
+    of its own; in each, gestures of a body that hardly goes over the floor.
+    """
+    names = ("one", "other")
+    clips = [TOY.clip("one", 4.0, 0.0, swing=0.02), moved(metres)(TOY.clip("other", 4.0, 0.0, swing=0.02))]
+    clips += [TOY.clip("one talks", 3.0, 0.0, swing=1.2)]
+    clips += [moved(metres)(TOY.clip("other talks", 3.0, 0.0, swing=1.2))]
+    project = edits.add_clips(Project("p"), [(f"{c.name}.glb", 0, "", c) for c in clips])
+    clip_of = {entry.name: ident for ident, entry in project.clips.items()}
+    for n, name in enumerate(names):
+        loop = clip_of["other talks" if held and n else name]
+        project = edits.add_stance(project, "body", name, [loop])
+        stance = list(project.graphs["body"].stances)[-1]
+        if held and n:
+            rest = list(project.graphs["body"].actions)[-1]
+            project = edits.update_actions(project, [rest], timing={"start": 0.0, "end": 0.0})
+        project = edits.place_clips(project, [clip_of[f"{name} talks"]], "body", "gesture", stance)
+    return project
+
+
+@pytest.mark.parametrize("held", [False, True])
+@pytest.mark.parametrize("metres", [0.06, 0.12, 0.2])
+def test_a_bridge_shifts_the_body_no_faster_than_the_clips_do_and_shows_no_gesture(
+    metres: float, held: bool
+) -> None:
+    after, made = bridge_all(shifted_talkers(metres, held))
+    assert len(made) == 2 and describe_unbridged(after) == []
+    for bridge in made:
+        played = after.action(bridge.action)
+        assert played is not None and after.skeleton is not None
+        start = {"body": played.stance}
+        asked = [Play(id="p", action=bridge.action, at=1.0)]
+        plan = plan_performance(after, asked, 8.0, 1, start, idle=False)
+        pose = Evaluator(plan, after).layered(np.arange(480) / 60)
+        at = after.skeleton.globals(pose)[1]
+        hips = np.linalg.norm(np.diff(at[:, 0][:, (0, 2)], axis=0), axis=-1) * 60
+        assert hips.max() < 1.1 * SHIFT
+        hand = after.skeleton.names.index("LeftHand")
+        around = at[:, hand] - at[:, 0]
+        assert np.ptp(around, axis=0).max() < 0.1  # the gesture's swing would be wider
+
+
+def test_two_bridges_by_one_moment_share_the_copy_that_is_held() -> None:
+    project = shifted_talkers(0.1, True)
+    after, made = bridge_all(project)
+    clips = {played.clip for x in made if (played := after.action(x.action)) is not None}
+    assert len(after.clips) - len(project.clips) == len(clips - project.clips.keys()) <= 2
+    assert bridge_all(after) == (after, ())
 
 
 @pytest.mark.nightly

@@ -23,8 +23,8 @@ struct Life {
     double follow_through = 1.0, shoulder_lift = 1.0, planted_feet = 1.0;
     List<Ref<Manner>> manners = {
         lang::made<Manner>(Manner{1.0, 1.0, 1.1, 2.4, 1.4, 1.0, 0.85, 1.0}),
-        lang::made<Manner>(Manner{1.0, 1.0, 0.85, 1.5, 0.8, 0.9, 1.0, 1.45}),
-        lang::made<Manner>(Manner{1.15, 1.1, 1.05, 2.1, 1.0, 1.0, 1.0, 0.65}),
+        lang::made<Manner>(Manner{1.0, 1.0, 1.0, 1.5, 1.1, 0.9, 1.0, 1.45}),
+        lang::made<Manner>(Manner{1.15, 1.1, 1.35, 2.3, 1.3, 1.0, 1.0, 0.65}),
         lang::made<Manner>(Manner{0.8, 1.0, 1.1, 3.8, 1.3, 0.7, 0.6, 1.0}),
         lang::made<Manner>(Manner{1.2, 1.0, 0.2, 1.0, 0.6, 0.7, 1.0, 1.6}),
     };

@@ -186,8 +186,9 @@ inline List<Ref<FootGoal>> _stepped(
         return List<Ref<FootGoal>>{};
     }
     List<double> ways;
-    for (int side2 = 0; side2 < 2; side2++) {
-        ways.push_back(feet_solve::foot_way(lang::at(first, side2), lang::at(last, side2)));
+    for (int side = 0; side < 2; side++) { // a foot that does not stand before or after needs no time for a step
+        double stands = lang::at(first, side)->planted * lang::at(last, side)->planted;
+        ways.push_back(stands * feet_solve::foot_way(lang::at(first, side), lang::at(last, side)));
     }
     double part = 0.5;
     if (lang::at(ways, 0) + lang::at(ways, 1) > 0.0) {

@@ -15,8 +15,8 @@ const FACTORS = [
 ];
 const MANNERS = {
   idle: { aversion_rate: 1.1, aversion_length: 2.4, aversion_angle: 1.4, saccade_rate: 0.85 },
-  listening: { aversion_rate: 0.85, aversion_length: 1.5, aversion_angle: 0.8, saccades: 0.9, blinks: 1.45 },
-  talking: { breathing: 1.15, breath_rate: 1.1, aversion_rate: 1.05, aversion_length: 2.1, blinks: 0.65 },
+  listening: { aversion_rate: 1.0, aversion_length: 1.5, aversion_angle: 1.1, saccades: 0.9, blinks: 1.45 },
+  talking: { breathing: 1.15, breath_rate: 1.1, aversion_rate: 1.35, aversion_length: 2.3, aversion_angle: 1.3, blinks: 0.65 },
   thinking: { breathing: 0.8, aversion_rate: 1.1, aversion_length: 3.8, aversion_angle: 1.3, saccades: 0.7, saccade_rate: 0.6 },
   reacting: { breathing: 1.2, aversion_rate: 0.2, aversion_angle: 0.6, saccades: 0.7, blinks: 1.6 },
 };

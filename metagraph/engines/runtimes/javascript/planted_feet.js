@@ -161,7 +161,11 @@ function _stepped(height, before, after, first, last, passed, seconds) {
   if (before.length === 0 || after.length === 0 || first.length === 0 || last.length === 0) {
     return [];
   }
-  const ways = range(2).map((side) => footWay(first[side], last[side]));
+  const ways = [];
+  for (let side = 0; side < 2; side++) { // a foot that does not stand before or after needs no time for a step
+    const stands = first[side].planted * last[side].planted;
+    ways.push(stands * footWay(first[side], last[side]));
+  }
   let part = 0.5;
   if (ways[0] + ways[1] > 0) {
     part = Math.min(Math.max(ways[0] / (ways[0] + ways[1]), LEAST_PART), 1 - LEAST_PART);

@@ -101,3 +101,13 @@ def test_files_chosen_lately_are_listed_until_they_are_gone(qapp, tmp_path):
 
 def test_our_characters_are_there():
     assert all(file.is_file() for file in OURS.values())
+
+
+def test_a_character_that_is_dropped_by_itself_is_drawn_and_undo_takes_it_back(toys):
+    drive = toys
+    before = drive.document.project.character
+    drive.importing.import_paths([str(OURS["Ben"])])
+    drive.wait(lambda: drive.document.project.character != before, 60)
+    assert Path(drive.document.project.character).name == "ben.glb"
+    drive.document.undo()
+    assert drive.document.project.character == before

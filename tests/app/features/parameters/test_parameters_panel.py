@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -166,3 +167,35 @@ def test_a_project_with_parameters_is_saved_opened_and_exported(toys, panel, tmp
     document = json.loads((tmp_path / "game" / "toy.json").read_bytes())
     assert list(document["parameters"]) == list(again.parameters)
     assert "get mood()" in (tmp_path / "game" / "toy.parameters.js").read_text()
+
+
+def test_in_a_live_session_it_is_requested_as_by_a_client(toys, panel, monkeypatch):
+    choose(panel, "What lasts", "Mood")
+    asked = []
+    panel.controls["mood"].activated.emit(0)
+    with monkeypatch.context() as patched:  # for a moment: the window plays on
+        patched.setattr(panel.performance.live, "stage", SimpleNamespace(ask=asked.append))
+        panel.send()
+    assert asked[0].mood == "neutral" and directed(panel) == []
+
+
+def test_what_was_tried_is_over_once_something_else_is_on_stage(toys, panel):
+    choose(panel, "Gestures", "Blink")
+    QTest.mouseClick(panel.controls["blink"], Qt.MouseButton.LeftButton)
+    toys.wait(lambda: directed(panel) == ["blink"])
+    panel.session.onstage.improvise("listening")
+    assert directed(panel) == []
+    panel.session.onstage.improvise("talking")
+
+
+def test_one_action_is_found_under_its_stance(toys, panel):
+    panel.add_menu.aboutToShow.emit()
+    (menu,) = (a.menu() for a in panel.add_menu.actions() if a.text() == "One action")
+    inside = next(a.menu() for a in menu.actions() if a.text().startswith("arms: "))
+    assert inside.isEmpty()
+    inside.aboutToShow.emit()
+    entry = inside.actions()[0]
+    entry.trigger()
+    ((name, parameter),) = panel.document.project.parameters.items()
+    action = panel.document.project.action(parameter.request.action)
+    assert action.name == entry.text() and action.layer == "arms" and name in panel.controls

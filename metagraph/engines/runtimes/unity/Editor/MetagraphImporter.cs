@@ -80,6 +80,11 @@ namespace Metagraph
             }
             GameObject figure = imported != null ? Instantiate(imported) : new GameObject();
             figure.name = export.name;
+            var clips = figure.GetComponent<Animation>();
+            if (clips != null)
+            {
+                DestroyImmediate(clips); // glTFast's, which would play by itself
+            }
             var character = figure.AddComponent<MetagraphCharacter>();
             character.asset = export;
             character.output = output;

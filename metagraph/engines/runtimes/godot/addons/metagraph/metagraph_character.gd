@@ -137,12 +137,12 @@ func describe() -> Dictionary:
 
 ## Sets a parameter of the project to a number, a bool, a String, an Array of Strings, a Vector3, or nothing for a trigger. Returns the id
 ## of the request that this makes.
-func set_parameter(parameter: String, value = null) -> String:
+func set_parameter(parameter: String, value: Variant = null) -> String:
 	return character.set_parameter(parameter, value) if character != null else ""
 
 
 ## Returns the value that a parameter was set to, else its first one; null where there is none of that name.
-func get_parameter(parameter: String):
+func get_parameter(parameter: String) -> Variant:
 	return character.get_parameter(parameter) if character != null else null
 
 

@@ -3,6 +3,7 @@ using System.Collections.Generic;
 using Unity.Collections;
 using UnityEngine;
 using UnityEngine.Animations;
+using UnityEngine.Experimental.Animations; // where the source and the order of an output still are
 using UnityEngine.Playables;
 
 namespace Metagraph

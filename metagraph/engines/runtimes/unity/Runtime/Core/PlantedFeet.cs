@@ -149,7 +149,12 @@ namespace Metagraph
             {
                 return new List<FootGoal>();
             }
-            var ways = PlainNumbers.Range(2).Select(side => FeetSolveRules.FootWay(first[side], last[side])).ToList();
+            var ways = new List<double>();
+            for (int side = 0; side < 2; side++) // a foot that does not stand before or after needs no time for a step
+            {
+                var stands = first[side].Planted * last[side].Planted;
+                ways.Add(stands * FeetSolveRules.FootWay(first[side], last[side]));
+            }
             var part = 0.5;
             if (ways[0] + ways[1] > 0.0)
             {

@@ -105,8 +105,9 @@ static func _stepped(height, before, after, first, last, passed, seconds):
 	if before.size() == 0 or after.size() == 0 or first.size() == 0 or last.size() == 0:
 		return []
 	var ways = []
-	for side2 in range(2):
-		ways.append(FeetSolve.foot_way(first[side2], last[side2]))
+	for side in range(2):  # a foot that does not stand before or after needs no time for a step
+		var stands = first[side].planted * last[side].planted
+		ways.append(stands * FeetSolve.foot_way(first[side], last[side]))
 	var part = 0.5
 	if ways[0] + ways[1] > 0.0:
 		part = Util.least(Util.most(ways[0] / (ways[0] + ways[1]), LEAST_PART), 1.0 - LEAST_PART)

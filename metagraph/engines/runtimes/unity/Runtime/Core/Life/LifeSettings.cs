@@ -80,8 +80,8 @@ namespace Metagraph
         private readonly Dictionary<string, Manner> modes = new Dictionary<string, Manner>
         {
             { "idle", new Manner { AversionRate = 1.1, AversionLength = 2.4, AversionAngle = 1.4, SaccadeRate = 0.85 } },
-            { "listening", new Manner { AversionRate = 0.85, AversionLength = 1.5, AversionAngle = 0.8, Saccades = 0.9, Blinks = 1.45 } },
-            { "talking", new Manner { Breathing = 1.15, BreathRate = 1.1, AversionRate = 1.05, AversionLength = 2.1, Blinks = 0.65 } },
+            { "listening", new Manner { AversionRate = 1.0, AversionLength = 1.5, AversionAngle = 1.1, Saccades = 0.9, Blinks = 1.45 } },
+            { "talking", new Manner { Breathing = 1.15, BreathRate = 1.1, AversionRate = 1.35, AversionLength = 2.3, AversionAngle = 1.3, Blinks = 0.65 } },
             { "thinking", new Manner { Breathing = 0.8, AversionRate = 1.1, AversionLength = 3.8, AversionAngle = 1.3, Saccades = 0.7, SaccadeRate = 0.6 } },
             { "reacting", new Manner { Breathing = 1.2, AversionRate = 0.2, AversionAngle = 0.6, Saccades = 0.7, Blinks = 1.6 } },
         };

@@ -212,9 +212,57 @@ FString UMetagraphComponent::Mode(const FString& Mode)
 	return Ask(RequestOf({{"do", "mode"}, {"mode", Name.empty() ? metagraph::Json() : metagraph::Json(Name)}}));
 }
 
+FString UMetagraphComponent::SetParameter(const FString& Parameter, const FMetagraphValue& Value)
+{
+	return Begin() ? MetagraphText::Unreal(Character->Character.set_parameter(MetagraphText::Plain(Parameter), Value.Value)) : FString();
+}
+
+FString UMetagraphComponent::SetParameterNumber(const FString& Parameter, float Value)
+{
+	return SetParameter(Parameter, {metagraph::Json(static_cast<double>(Value))});
+}
+
+FString UMetagraphComponent::SetParameterSwitch(const FString& Parameter, bool bOn)
+{
+	return SetParameter(Parameter, {metagraph::Json(bOn)});
+}
+
+FString UMetagraphComponent::SetParameterChoice(const FString& Parameter, const FString& Choice)
+{
+	return SetParameter(Parameter, {metagraph::Json(MetagraphText::Plain(Choice))});
+}
+
+FString UMetagraphComponent::SetParameterChoices(const FString& Parameter, const TArray<FString>& Choices)
+{
+	metagraph::List<std::string> Words;
+	for (const FString& Choice : Choices)
+	{
+		Words.push_back(MetagraphText::Plain(Choice));
+	}
+	return SetParameter(Parameter, {metagraph::Json::texts(Words)});
+}
+
+FString UMetagraphComponent::SetParameterPoint(const FString& Parameter, FVector Place)
+{
+	const FVector Own = OwnSpace(Place);
+	return SetParameter(Parameter, {metagraph::Json::list({Own.X, Own.Y, Own.Z})});
+}
+
+FString UMetagraphComponent::PlayParameter(const FString& Parameter)
+{
+	return SetParameter(Parameter, {metagraph::Json()});
+}
+
 FString UMetagraphComponent::Interrupt()
 {
 	return Begin() ? MetagraphText::Unreal(Character->Talk.interrupt()) : FString();
+}
+
+FString UMetagraphComponent::Parameter(const FString& Name) const
+{
+	return Character.IsValid()
+		? MetagraphText::Unreal(metagraph::json::text(Character->Character.get_parameter(MetagraphText::Plain(Name))))
+		: FString();
 }
 
 FVector UMetagraphComponent::OwnSpace(FVector Place) const

@@ -22,6 +22,12 @@ struct FMetagraphGraph
 	metagraph::Ref<const metagraph::Graph> Graph;
 };
 
+/** What a parameter is set to. */
+struct FMetagraphValue
+{
+	metagraph::Json Value;
+};
+
 /** A character of the core, and what it says with gestures; the latter refers to the former, so it stays where it is. */
 struct FMetagraphCharacter
 {

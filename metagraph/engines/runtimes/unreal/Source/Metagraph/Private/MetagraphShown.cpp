@@ -1,5 +1,6 @@
 #include "MetagraphShown.h"
 
+#include "Animation/AnimCurveTypes.h"
 #include "Animation/AnimInstance.h"
 #include "BoneContainer.h"
 #include "GameFramework/Actor.h"
@@ -60,5 +61,6 @@ void FMetagraphShown::Apply(FPoseContext& Output, float Alpha, bool bBones, bool
 	{
 		const float Before = Alpha >= 1.0f ? 0.0f : Output.Curve.Get(Pose->Curves[N]);
 		Output.Curve.Set(Pose->Curves[N], Before + (Pose->Weights[N] - Before) * (Alpha >= 1.0f ? 1.0f : Alpha));
+		Output.Curve.SetFlags(Pose->Curves[N], UE::Anim::ECurveElementFlags::MorphTarget); // else the skeleton has to say so
 	}
 }

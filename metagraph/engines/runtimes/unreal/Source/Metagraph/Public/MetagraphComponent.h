@@ -7,6 +7,7 @@
 class UMetagraphAsset;
 class USkeletalMeshComponent;
 struct FMetagraphCharacter;
+struct FMetagraphValue;
 
 /** A pose as the animation node reads it, on any thread: bones by name, local, in Unreal's space. Never changed once made. */
 struct METAGRAPH_API FMetagraphPose
@@ -151,10 +152,38 @@ public:
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
 	FString Mode(const FString& Mode);
 
+	/** Set a parameter that the project declares to a number, which is kept within its range. Returns the id of the request. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetParameterNumber(const FString& Parameter, float Value);
+
+	/** Set a parameter that is a switch. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetParameterSwitch(const FString& Parameter, bool bOn);
+
+	/** Set a parameter to one of its choices. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetParameterChoice(const FString& Parameter, const FString& Choice);
+
+	/** Set a parameter to some of its choices. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetParameterChoices(const FString& Parameter, const TArray<FString>& Choices);
+
+	/** Set a parameter to a place in the world. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SetParameterPoint(const FString& Parameter, FVector Place);
+
+	/** Play a parameter that is a trigger. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString PlayParameter(const FString& Parameter);
+
 	/** Break off all that is said, because the other speaks: the voice stops at its next sound, gestures go back, and the character
 	 *  looks at the other. What is said next begins at once. */
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
 	FString Interrupt();
+
+	/** The value of a parameter, as JSON: what it was set to, else its first one. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Parameter(const FString& Name) const;
 
 	/** Take a request back; all of them where no id is given. */
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
@@ -191,6 +220,7 @@ private:
 	TObjectPtr<USkeletalMeshComponent> Mesh;
 
 	bool Begin();
+	FString SetParameter(const FString& Parameter, const FMetagraphValue& Value);
 	FVector OwnSpace(FVector Place) const;
 	void Tell();
 	void Show();
