@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -42,6 +42,7 @@ class PropMeshes:
     folder: Path = Path()
     meshes: dict[Path, CharacterMesh] = field(default_factory=dict)
     _figures: dict[tuple[Path, float], SkinnedFigure] = field(default_factory=dict)
+    carrying: tuple[Hashable, tuple[str, float]] | None = None  # what was last found to carry who sits
 
     def locate(self, path: str, folder: Path | None = None) -> Path:
         """Return the whole path of a prop's file, spelt in one way. folder: instead of its own."""
@@ -61,6 +62,7 @@ class PropMeshes:
         """Forget all figures but some, and the files that none of those is of."""
         self._figures = {key: figure for key, figure in self._figures.items() if key in used}
         places = {place for place, _ in used}
+        self.carrying = None
         self.meshes = {place: mesh for place, mesh in self.meshes.items() if place in places}
 
 

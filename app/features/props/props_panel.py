@@ -27,6 +27,7 @@ from app.features.props.placing import Placing
 from app.look.names import make_readable_name
 from app.project.jobs import Jobs
 from app.stage.figures import Figures
+from app.stage.seat_fit import SAME, find_carrying_prop, fit_prop_to_seat, measure_seat_height
 from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_noop
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
@@ -37,6 +38,7 @@ from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.props import add_prop, find_grip, remove_prop
 from metagraph.graph.model import Project
 from metagraph.graph.prop import LARGEST, Prop
+from metagraph.graph.seats import find_seat
 from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.roles import find_roles
 
@@ -88,7 +90,7 @@ class PropsPanel(QWidget):
         self._lay_out()
         document.changed.connect(self._follow)
         document.loaded.connect(self.refresh)
-        figures.props.changed.connect(self.refresh)
+        figures.changed.connect(self.refresh)
         session.look.changed.connect(self.plan.update)
         placing.changed.connect(self._follow_choice)
         self.refresh()
@@ -118,7 +120,16 @@ class PropsPanel(QWidget):
         self.numbers["scale", 0].setRange(0.001, LARGEST)
         for column in (1, 3, 5):
             grid.setColumnStretch(column, 1)
-        grid.setRowStretch(3, 1)
+        grid.setRowStretch(4, 1)
+        self.seat_words = QLabel(self.fields)
+        self.seat_words.setWordWrap(True)
+        self.seat_button = QPushButton(tr("Fit to who sits"), self.fields)
+        self.seat_button.setToolTip(
+            tr("Makes the prop as high as the body above it: larger or smaller, or lifted if it is")
+        )
+        self.seat_button.clicked.connect(self.fit_to_seat)
+        grid.addWidget(self.seat_words, 3, 0, 1, 4)
+        grid.addWidget(self.seat_button, 3, 4, 1, 2)
         left = QVBoxLayout()
         left.setSpacing(8)
         left.addLayout(buttons)
@@ -220,6 +231,43 @@ class PropsPanel(QWidget):
         for joint in [*first, *(name for name in names if name not in first)]:
             self.joint.addItem(make_readable_name(joint), joint)
         self.joint.choose(prop.joint)
+        self._show_seat()
+
+    def _measure_seat(self) -> tuple[float, float] | None:
+        """Return how high the chosen prop is below who sits on it, and how high it should be, metres; None if
+        nobody sits on it.
+        """
+        project, meshes = self.document.project, self.figures.props.meshes
+        seat = find_seat(project) if self.current in project.props else None
+        if seat is None or project.skeleton is None:
+            return None
+        ident, top = find_carrying_prop(project, meshes, seat)
+        figure = self.figures.figure(project.skeleton) if ident == self.current else None
+        return (top, measure_seat_height(project, seat, figure)) if figure is not None else None
+
+    def _show_seat(self) -> None:
+        """Say how well the chosen prop carries who sits on it."""
+        found, prop = self._measure_seat(), self.prop
+        words = ""
+        if found is not None and prop is not None:
+            off = round((found[0] - found[1]) * 100)
+            if off > 0:
+                words = tr("The body sinks {off} cm into {name}", off=off, name=prop.name)
+            elif off < 0:
+                words = tr("The body sits {off} cm above {name}", off=-off, name=prop.name)
+            else:
+                words = tr("The body sits on {name}", name=prop.name)
+        self.seat_words.setText(words)
+        self.seat_words.setVisible(bool(words))
+        self.seat_button.setVisible(bool(words))
+        self.seat_button.setEnabled(found is not None and abs(found[0] - found[1]) > SAME)
+
+    def fit_to_seat(self) -> None:
+        """Make the chosen prop as high as who sits on it."""
+        found, prop = self._measure_seat(), self.prop
+        if found is not None and prop is not None:
+            fitted = fit_prop_to_seat(prop, *found)
+            self.placing.edit(tr("Fit {name} to who sits", name=prop.name), self.current, fitted)
 
     # --- choosing and editing
 
