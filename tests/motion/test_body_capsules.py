@@ -32,7 +32,7 @@ def sample() -> Project:
 
 @cache
 def measured(name: str) -> tuple[tuple[BodyPart, ...], Array, Array]:
-    """The capsules of a body, and the corners `[N, 3, 3]` of its triangles, as it stands, and their owners."""
+    """The capsules of a body, and the corners `[N, 3, 3]` of its triangles as it stands, and their owners."""
     character, project = read_character(SAMPLES / name), sample()
     skeleton = project.skeleton
     assert skeleton is not None

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from app.features.props.placing import Placing
     from app.features.props.props_panel import PropsPanel
 
-DROPPED = (".obj", ".stl", ".ply", ".off")  # a GLB that is dropped is a clip or a character
+DROPPED = (".obj", ".stl", ".ply", ".off", ".3mf")  # a GLB that is dropped is a clip or a character
 
 
 class PropsFeature(Feature):
@@ -81,7 +81,7 @@ COMMANDS = (
         tr_noop("Add &props…"),
         PropsFeature.ask,
         enabled=has_skeleton,
-        tip=tr_noop("Furniture, walls, things in a hand: OBJ, STL, PLY, OFF or GLB"),
+        tip=tr_noop("Furniture, walls, things in a hand: OBJ, STL, PLY, OFF, 3MF or GLB"),
     ),
 )
 

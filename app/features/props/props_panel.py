@@ -80,7 +80,7 @@ class PropsPanel(QWidget):
         self.plan.chosen.connect(self.choose)
         self.empty = QLabel(
             tr(
-                "A prop is a desk, a cup or a wall: an OBJ, STL, PLY, OFF or GLB file. Add one of the "
+                "A prop is a desk, a cup or a wall: an OBJ, STL, PLY, OFF, 3MF or GLB file. Add one of the "
                 "samples, or drop a file of yours on the window."
             ),
             self,
