@@ -29,7 +29,7 @@ from app.project.jobs import Jobs
 from app.stage.figures import Figures
 from app.stage.seat_fit import SAME, find_carrying_prop, fit_prop_to_seat, measure_seat_height
 from app.stage.session import StageSession
-from app.translation import tr, tr_error, tr_noop
+from app.translation import tr, tr_error, tr_noop, tr_plural
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.errors import FileError
 from metagraph.formats.project.paths import make_path_for_project
@@ -130,9 +130,15 @@ class PropsPanel(QWidget):
         self.seat_button.clicked.connect(self.fit_to_seat)
         grid.addWidget(self.seat_words, 3, 0, 1, 4)
         grid.addWidget(self.seat_button, 3, 4, 1, 2)
+        self.outside = QLabel(self)
+        self.outside.setWordWrap(True)
+        self.copy_button = QPushButton(tr("Copy into the project's folder"), self)
+        self.copy_button.clicked.connect(self.copy_outside)
         left = QVBoxLayout()
         left.setSpacing(8)
         left.addLayout(buttons)
+        left.addWidget(self.outside)
+        left.addWidget(self.copy_button, 0, Qt.AlignmentFlag.AlignLeft)
         left.addWidget(self.empty)
         left.addWidget(self.list, 1)
         inner = QWidget(self)
@@ -215,7 +221,48 @@ class PropsPanel(QWidget):
         for widget in (self.list, self.plan, self.fields):
             widget.setVisible(bool(props))
         self.empty.setVisible(not props)
+        self._show_outside()
         self.plan.set_current(self.current)
+
+    def _find_outside(self) -> dict[str, Path]:
+        """Return the files of props outside the project's folder, by their ids; none until it has one."""
+        from metagraph.formats.props.copying import find_outside_props
+
+        folder = self.document.folder
+        return {} if folder is None else find_outside_props(self.document.project, folder)
+
+    def _show_outside(self) -> None:
+        """Say which props do not go where the project's folder goes."""
+        found = self._find_outside()
+        names = ", ".join(dict.fromkeys(place.name for place in found.values()))
+        self.outside.setText(
+            tr("Outside the project's folder: {names}. Who gets the folder does not get them.", names=names)
+        )
+        for widget in (self.outside, self.copy_button):
+            widget.setVisible(bool(found))
+
+    def copy_outside(self) -> None:
+        """Copy the files of props outside the project's folder into it on a thread, and use the copies."""
+        from metagraph.formats.props.copying import copy_props, set_prop_paths
+
+        found, folder = self._find_outside(), self.document.folder
+        if folder is None or not found:
+            return
+
+        def use(result: tuple[dict[str, str], list[FileError]]) -> None:
+            paths, bad = result
+            if paths and folder == self.document.folder:
+                words = tr_plural("Copy {count} prop", "Copy {count} props", len(paths))
+                self.document.edit(words, lambda project: set_prop_paths(project, paths))
+            for error in bad:
+                self.document.failed.emit(tr_error(error))
+
+        self.jobs.start(
+            "copy props",
+            lambda _: copy_props(found, folder),
+            use,
+            lambda error: self.document.failed.emit(tr_error(error)),
+        )
 
     def _show_fields(self) -> None:
         prop = self.prop or Prop(name="", path="")

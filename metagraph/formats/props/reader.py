@@ -84,6 +84,26 @@ def read_prop(path: str | Path) -> CharacterMesh:
     return _Builder(path.stem, notes, ending in _SAY_SIDES).build(path, parts, unit)
 
 
+def list_files_beside(path: Path) -> list[Path]:
+    """Return the files beside a prop's that belong to it: the materials and pictures of an OBJ. Raises
+    FileError if it cannot be read.
+    """
+    if path.suffix.lower() != ".obj":
+        return []
+    import trimesh
+
+    beside: Any = _Beside(path.parent, [])
+    try:
+        content = io.BytesIO(read_file(path, PROP_FILE))
+        trimesh.load_scene(content, file_type="obj", resolver=beside, process=False)
+    except FileError:
+        raise
+    except Exception as error:  # as above
+        why = phrase("it cannot be read ({error})", error=str(error)[:200])
+        raise FileError(path, why, "", REMEDY) from None
+    return list(dict.fromkeys(beside.used))
+
+
 @dataclass(frozen=True)
 class _Part:
     """positions `[V, 3]` in the file's unit, triangles `[N, 3]`, and trimesh's word on how it looks."""
@@ -99,6 +119,7 @@ class _Beside:
 
     folder: Path
     notes: list[str]
+    used: list[Path] = field(default_factory=list)
 
     def get(self, name: str) -> bytes:
         kind = Path(str(name).replace("\\", "/")).name
@@ -106,6 +127,7 @@ class _Beside:
         if place.suffix.lower() not in _BESIDE or not is_file(place):
             self.notes.append(phrase("'{name}' is not beside it and was left out", name=kind[:80]))
             raise FileNotFoundError(kind)
+        self.used.append(place)
         return read_file(place, PROP_FILE)
 
     def __getitem__(self, name: str) -> bytes:

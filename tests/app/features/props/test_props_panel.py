@@ -266,3 +266,21 @@ def test_a_chair_below_who_sits_says_how_it_fits_and_is_fitted_as_one_step(toys)
     panel.numbers["at", 0].setValue(2.0)
     assert panel.seat_words.text() == "" and not panel.seat_button.isVisibleTo(panel)
     toys.docks["props"].close()
+
+
+def test_props_outside_the_folder_are_said_and_copied_into_it_as_one_step(toys, panel, box, tmp_path):
+    put(toys, panel, box)
+    assert not panel.copy_button.isVisibleTo(panel), "a project without a file has no folder yet"
+    place = tmp_path / "show" / "p.metagraph.yaml"
+    place.parent.mkdir()
+    panel.document.save(place)
+    panel.refresh()
+    assert "box.stl" in panel.outside.text() and panel.copy_button.isVisibleTo(panel)
+    QTest.mouseClick(panel.copy_button, Qt.MouseButton.LeftButton)
+    toys.wait(lambda: only(panel).path == "props/box.stl")
+    assert (place.parent / "props" / "box.stl").read_bytes() == box.read_bytes()
+    assert not panel.copy_button.isVisibleTo(panel) and not panel.outside.isVisibleTo(panel)
+    assert panel.document.undo_stack.undoText().startswith("Copy 1 prop")
+    toys.wait(lambda: count_drawn(toys) == 1)
+    panel.document.undo()
+    assert only(panel).path == "../box.stl"
