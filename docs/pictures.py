@@ -2,8 +2,8 @@
 under `xvfb-run`).
 
 Writes into docs/images: screens/*.webp, timing.png, practice.png, empty.png, light.png, requests.png,
-models.png, label.png, export.png, parameters.png, web.png, conversation.png, motion-graph.png and
-performance.png, from our own sample clips only; with names behind it, only those. The screen has to be
+models.png, label.png, characters.png, export.png, parameters.png, web.png, conversation.png, motion-graph.png
+and performance.png, from our own sample clips only; with names behind it, only those. The screen has to be
 larger than 2560 x 1440. The web page needs Node, Chromium and what tests/package.json names.
 """
 
@@ -306,6 +306,21 @@ def exporting() -> None:
     close(out)
 
 
+def characters() -> None:
+    """The gallery of characters, over the sample."""
+    from app.features.character.character_gallery import CharacterGallery
+
+    out = on_sample()
+    out.do("character")
+    gallery = out.window.findChild(CharacterGallery)
+    gallery.resize(760, 400)
+    wait(20000, gallery.is_drawn)
+    wait(300)
+    shoot(gallery, "characters.png")
+    gallery.close()
+    close(out)
+
+
 def labelling() -> None:
     """A clip of the practice project under review."""
     from app.features.labelling.review_dialog import ReviewDialog
@@ -428,6 +443,7 @@ PICTURES: dict[str, Callable[[], None]] = {
     "requests": requests,
     "models": models,
     "label": labelling,
+    "characters": characters,
     "export": exporting,
     "parameters": parameters,
     "conversation": conversation,

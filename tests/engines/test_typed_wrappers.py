@@ -236,9 +236,9 @@ def test_typescript_knows_the_types(project: Project, tmp_path: Path) -> None:
     shutil.copytree(RUNTIMES / "javascript", tmp_path / "metagraph")
 
     def check(code: str) -> str:
-        (tmp_path / "game.ts").write_text(code)
+        (tmp_path / "game.mts").write_text(code)
         options = ("--noEmit", "--strict", "--target", "es2022", "--module", "nodenext")
-        command = ["node", str(TYPES), *options, "game.ts"]
+        command = ["node", str(TYPES), *options, "game.mts"]
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
         return done.stdout
 
@@ -410,6 +410,7 @@ int main(int, char** words) {
 """
 
 
+@pytest.mark.nightly
 @needs_compiler
 def test_cpp(project: Project, export: Path, wanted: Told, tmp_path: Path) -> None:
     (tmp_path / "metagraph").symlink_to(RUNTIMES / "cpp")
@@ -748,8 +749,8 @@ def test_targets_write_the_class_only_for_projects_with_parameters(
     assert set(stems) <= {path.name for path in report.files}
     readme = next(p for p in report.files if p.name == "README.md" and p.parent == tmp_path / "typed")
     text = readme.read_text(encoding="utf-8")
-    assert all(name.replace("Toy", "*") in text for name in stems)
-    assert "a class of the parameters" in text
+    assert all(name in text or name.endswith(".cs") for name in stems)
+    assert "a typed class of the character's parameters" in text
 
 
 def test_a_choice_keeps_its_name_whatever_it_stands_for(project: Project) -> None:

@@ -54,6 +54,7 @@ class CharacterGallery(QDialog):
     def __init__(self, shell: Shell) -> None:
         super().__init__(shell.widget)
         self.shell, self.document = shell, shell.document
+        self._drawn = 0  # characters that have their picture
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Choose character"))
         self.resize(780, 440)
@@ -139,6 +140,7 @@ class CharacterGallery(QDialog):
         def done(portraits: list[Portrait]) -> None:
             for item, portrait in zip(items, portraits, strict=True):
                 self._show(item, portrait)
+            self._drawn += len(items)
             self._selected()
 
         self.shell.jobs.start(
@@ -148,6 +150,10 @@ class CharacterGallery(QDialog):
             lambda error: self.said.setText(tr_error(error)),
             quick=True,
         )
+
+    def is_drawn(self) -> bool:
+        """Return whether every character has its picture."""
+        return self._drawn == self.list.count() > 0
 
     def _show(self, item: QListWidgetItem, portrait: Portrait) -> None:
         if portrait.picture is not None:

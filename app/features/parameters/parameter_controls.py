@@ -6,7 +6,16 @@ from collections.abc import Callable
 from typing import Any
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QMenu, QPushButton, QToolButton, QWidget
+from PySide6.QtWidgets import (
+    QAbstractSpinBox,
+    QCheckBox,
+    QHBoxLayout,
+    QMenu,
+    QPushButton,
+    QSlider,
+    QToolButton,
+    QWidget,
+)
 
 from app.translation import tr
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, Scrub
@@ -23,7 +32,9 @@ def make_control(name: str, parameter: CharacterParameter, send: Send, parent: Q
     None for a trigger.
     """
     made = _MAKERS[parameter.type](parameter, send, parent)
-    made.setAccessibleName(name)
+    for part in (made, *made.findChildren(QSlider), *made.findChildren(QAbstractSpinBox)):
+        if not part.accessibleName():
+            part.setAccessibleName(name)
     made.setAccessibleDescription(parameter.about)
     return made
 
@@ -49,11 +60,6 @@ class NumberControl(QWidget):
         self._show(get_first_value(parameter))
         self.slider.valueChanged.connect(lambda at: self._set(self._least + self._span * at / STEPS, send))
         self.number.valueChanged.connect(lambda value: self._set(value, send))
-
-    def setAccessibleName(self, name: str) -> None:
-        super().setAccessibleName(name)
-        self.slider.setAccessibleName(name)
-        self.number.setAccessibleName(name)
 
     def _set(self, value: float, send: Send) -> None:
         self._show(value)

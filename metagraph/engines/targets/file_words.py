@@ -51,7 +51,6 @@ FILES: Mapping[str, Mapping[str, str]] = {
     },
     "unity": {
         "{stem}.metagraph": "the clips; the package makes the character of it",
-        "*Character.cs": "a class of the parameters that a game sets, with their types",
         "{stem}.humanoid.json": "the bones of a humanoid, for retargeting",
         "{stem}.glb": "the character's mesh, which Unity imports with glTFast or UnityGLTF",
         "Metagraph/": "the package; its README has all calls",

@@ -11,8 +11,8 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import escape
 
+from metagraph.common.xml_text import escape
 from metagraph.engines.targets.target import ExportOrder
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import Project
@@ -275,7 +275,7 @@ def _make_csharp_member(member: TypedMember) -> list[str]:
 
 
 def _in_xml(text: str) -> str:
-    return escape(" ".join(text.split()))
+    return escape(" ".join(text.split()), quote=False)
 
 
 # --- GDScript

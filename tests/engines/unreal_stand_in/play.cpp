@@ -151,15 +151,6 @@ static int Play(UMetagraphAsset& asset) {
     std::cout << "asked";
     for (const FString& id : asked) std::cout << " " << FTCHARToUTF8(*component.Answer(id).State).Get();
     std::cout << "\n";
-    const FString set[] = {
-        component.SetParameterNumber(FString(u"energy"), 1.5f), component.SetParameterSwitch(FString(u"speaking"), true),
-        component.SetParameterChoice(FString(u"mood"), FString(u"happy")), component.SetParameterChoices(FString(u"gesture_with"), TArray<FString>({FString(u"positive")})),
-        component.SetParameterPoint(FString(u"partner"), FVector(1100, 200, 150)), component.PlayParameter(FString(u"blink")), component.PlayParameter(FString(u"mood")),
-    };
-    for (int frame = 0; frame < 10; frame++) component.TickComponent(0.02f, LEVELTICK_All, nullptr);
-    std::cout << "set";
-    for (const FString& id : set) std::cout << " " << FTCHARToUTF8(*component.Answer(id).State).Get();
-    std::cout << "\n";
     return 0;
 }
 

@@ -9,6 +9,7 @@ from PySide6.QtCore import QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 
+from app.features.character import character_portraits
 from app.features.character.character_choice import MOST, OURS, list_recent, remember_character
 from app.features.character.character_gallery import CharacterGallery
 from preview.default_body.figure import DefaultBody
@@ -18,9 +19,10 @@ pytestmark = [pytest.mark.window, pytest.mark.gl]
 
 
 @pytest.fixture
-def gallery(toys):
-    """The gallery over a window whose skeleton is none of our characters'."""
+def gallery(toys, monkeypatch):
+    """The gallery over a window, without pictures: another process takes seconds to draw them."""
     drive = toys
+    monkeypatch.setattr(character_portraits, "_draw", lambda orders: {})
     drive.do("character")
     dialog = drive.window.findChild(CharacterGallery)
     yield drive, dialog
@@ -97,6 +99,16 @@ def test_files_chosen_lately_are_listed_until_they_are_gone(qapp, tmp_path):
     files[3].unlink()
     assert files[3] not in list_recent()
     QSettings().remove("character")
+
+
+@pytest.mark.nightly
+def test_each_character_is_drawn_in_the_pose_of_the_clips():
+    files = [*OURS.values(), None]
+    portraits = character_portraits.draw_portraits(files, None, "dark", None)
+    assert [p.refused for p in portraits] == ["", "", ""]
+    for portrait in portraits:
+        assert portrait.picture.shape[0] == portrait.picture.shape[1] > 100
+        assert 0.1 < (portrait.picture[..., 3] > 0).mean() < 0.6
 
 
 def test_our_characters_are_there():
