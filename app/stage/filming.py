@@ -64,7 +64,7 @@ def render_pictures(
 
     theme = THEMES[look] if isinstance(look, str) else look
 
-    seats = tuple(one for _, shown in seen for one in make_stools(shown, seat))
+    seats = tuple(one for of, shown in seen for one in make_stools(shown, seat, of, props))
     figure, first = seen[0]
     pose = first.pose(float(times[0])) if len(seen) == 1 and not callable(camera) else None
     turn = 0.0

@@ -156,6 +156,13 @@ class StagePerformance(QObject):
             return self.document.project.conversations[self.conversation].length
         return self.requests.kept.length if self.requests.kept is not None else None
 
+    def is_documents(self, shown: ShownPlayback) -> bool:
+        """Return whether what is shown, one of a conversation perhaps, plays the document's own graph."""
+        talk = self.document.project.conversations.get(self.conversation or "")
+        if talk is None or shown.folder is None:
+            return shown.folder is None
+        return shown.side < len(talk.sides) and talk.sides[shown.side].project is None
+
     def keep_conversation(self) -> None:
         """Keep what all speakers do as performances, which can be edited request by request and exported."""
         ident, shown = self.conversation, self.shown

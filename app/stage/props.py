@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 from PySide6.QtCore import QObject, Signal
 
@@ -21,10 +22,14 @@ from metagraph.graph.model import Project
 from metagraph.graph.prop import Prop, make_turn
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import CharacterMesh
+from metagraph.motion.mesh_rays import find_hits
 from preview.figure import SkinnedFigure
 
 if TYPE_CHECKING:
     from preview.scene import Actor
+
+LYING = 0.02  # metres between a prop and what it lies on
+SKY = 2000.0  # metres: higher than any prop
 
 
 @dataclass
@@ -37,6 +42,7 @@ class PropMeshes:
     folder: Path = Path()
     meshes: dict[Path, CharacterMesh] = field(default_factory=dict)
     _figures: dict[tuple[Path, float], SkinnedFigure] = field(default_factory=dict)
+    carrying: tuple[Hashable, tuple[str, float]] | None = None  # what was last found to carry who sits
 
     def locate(self, path: str, folder: Path | None = None) -> Path:
         """Return the whole path of a prop's file, spelt in one way. folder: instead of its own."""
@@ -56,6 +62,7 @@ class PropMeshes:
         """Forget all figures but some, and the files that none of those is of."""
         self._figures = {key: figure for key, figure in self._figures.items() if key in used}
         places = {place for place, _ in used}
+        self.carrying = None
         self.meshes = {place: mesh for place, mesh in self.meshes.items() if place in places}
 
 
@@ -135,6 +142,45 @@ def read_prop_meshes(project: Project, folder: Path) -> tuple[PropMeshes, list[s
     return out, problems
 
 
+def to_mesh_space(prop: Prop, origin: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return a ray as the mesh of a prop that stands has it, before it is turned, resized and placed; lengths
+    along it stay the same.
+    """
+    back = rotation.conjugate(np.array(make_turn(prop)))
+    start = rotation.rotate_vectors(back, origin - np.asarray(prop.at, float)) / prop.scale
+    return start, rotation.rotate_vectors(back, direction) / prop.scale
+
+
+def find_prop_on_ray(
+    project: Project, meshes: PropMeshes, origin: np.ndarray, direction: np.ndarray
+) -> tuple[str, float]:
+    """Return the id of the nearest prop that stands on a ray in the project's space, and how far along it is;
+    "" and infinity for none.
+    """
+    found = ("", float("inf"))
+    for ident, prop in project.props.items():
+        mesh = meshes.meshes.get(meshes.locate(prop.path))
+        if mesh is None or prop.joint:
+            continue
+        hits = find_hits(mesh.positions, mesh.triangles, *to_mesh_space(prop, origin, direction))
+        if len(hits) and hits[0] < found[1]:
+            found = (ident, float(hits[0]))
+    return found
+
+
+def put_prop_down(
+    project: Project, meshes: PropMeshes, ident: str, prop: Prop, to: tuple[float, float]
+) -> Prop:
+    """Return a prop at another place of the floor, x and z in metres. What lay on the floor or on a larger
+    prop lies on what is below it there; what was lifted off stays as high.
+    """
+    before, after = (
+        find_height_below(project, meshes, ident, x, z) for x, z in ((prop.at[0], prop.at[2]), to)
+    )
+    high = after if abs(prop.at[1] - before) < LYING else prop.at[1]
+    return msgspec.structs.replace(prop, at=(round(to[0], 4), round(high, 4), round(to[1], 4)))
+
+
 def find_height_below(project: Project, meshes: PropMeshes, ident: str, x: float, z: float) -> float:
     """Return how high the place of the floor is that a prop would lie on there, metres: on a larger prop that
     stands there, or 0 for the floor itself.
@@ -145,17 +191,9 @@ def find_height_below(project: Project, meshes: PropMeshes, ident: str, x: float
         mesh = meshes.meshes.get(meshes.locate(prop.path))
         if mesh is None or prop.joint or _measure_footprint(prop, meshes) <= own:
             continue
-        turn = np.array(make_turn(prop))
-        points = rotation.rotate_vectors(turn, mesh.positions * prop.scale) + np.asarray(prop.at, float)
-        a, b, c = (points[mesh.triangles[:, n]] for n in range(3))
-        area = (b[:, 0] - a[:, 0]) * (c[:, 2] - a[:, 2]) - (c[:, 0] - a[:, 0]) * (b[:, 2] - a[:, 2])
-        flat = np.abs(area) > 1e-12
-        a, b, c, area = a[flat], b[flat], c[flat], area[flat]
-        v = ((x - a[:, 0]) * (c[:, 2] - a[:, 2]) - (c[:, 0] - a[:, 0]) * (z - a[:, 2])) / area
-        w = ((b[:, 0] - a[:, 0]) * (z - a[:, 2]) - (x - a[:, 0]) * (b[:, 2] - a[:, 2])) / area
-        inside = (v >= 0) & (w >= 0) & (v + w <= 1)
-        heights = (a[:, 1] + v * (b[:, 1] - a[:, 1]) + w * (c[:, 1] - a[:, 1]))[inside]
-        high = max(high, float(np.max(heights, initial=0.0)))
+        origin, down = to_mesh_space(prop, np.array([x, SKY, z]), np.array([0.0, -1.0, 0.0]))
+        hits = find_hits(mesh.positions, mesh.triangles, origin, down)
+        high = max(high, SKY - float(np.min(hits, initial=SKY)))
     return high
 
 
@@ -169,19 +207,22 @@ def _measure_footprint(prop: Prop, meshes: PropMeshes) -> float:
 
 
 def make_prop_actors(
-    shown: ShownPlayback, meshes: PropMeshes, placed: tuple[np.ndarray, np.ndarray]
+    shown: ShownPlayback,
+    meshes: PropMeshes,
+    placed: tuple[np.ndarray, np.ndarray],
+    props: Mapping[str, Prop] | None = None,
 ) -> Iterator[Actor]:
     """Yield the props of the project that is shown, at one moment. placed: the character's global rotations
-    `[J, 4]` and positions `[J, 3]`, where it stands. A clip that plays alone has none; a prop whose joint the
-    character has not, and one whose mesh is not there, is left out. Of several speakers the first has what
-    stands.
+    `[J, 4]` and positions `[J, 3]`, where it stands. props: those to draw, if not those it was planned with.
+    A clip that plays alone has none; a prop whose joint the character has not, and one whose mesh is not
+    there, is left out. Of several speakers the first has what stands.
     """
     from preview.scene import Actor
 
     skeleton = shown.skeleton
     if shown.clip is not None or skeleton is None:
         return
-    for prop in shown.project.props.values():
+    for prop in (shown.project.props if props is None else props).values():
         figure = meshes.find_figure(meshes.locate(prop.path, shown.folder), prop.scale)
         if figure is None or (prop.joint and prop.joint not in skeleton) or (not prop.joint and shown.side):
             continue

@@ -14,10 +14,10 @@ _Three = Annotated[
 
 
 class Prop(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """A prop. path: of an OBJ, STL, PLY, OFF or GLB file, relative to the project file. at: metres, where its
-    origin is: from the ground between the character's feet, or from the joint that carries it, along that
-    joint's axes. turn: degrees about x, then y, then z. scale: 1 for as large as its file has it, in metres.
-    joint: the name of the joint that carries it, "" if it stands.
+    """A prop. path: of an OBJ, STL, PLY, OFF, 3MF or GLB file, relative to the project file. at: metres,
+    where its origin is: from the ground between the character's feet, or from the joint that carries it,
+    along that joint's axes. turn: degrees about x, then y, then z. scale: 1 for as large as its file has it,
+    in metres. joint: the name of the joint that carries it, "" if it stands.
     """
 
     name: Annotated[str, Meta(max_length=200)]

@@ -26,13 +26,14 @@ THICK, WIDE = 0.19, 0.42  # of a thigh's length: from its joint down to the seat
 @dataclass(frozen=True)
 class Seat:
     """A round seat, or a place on the floor. at: the middle of its top, metres, Y up. radius: metres. turn:
-    where who sits there faces, radians about +Y.
+    where who sits there faces, radians about +Y. stance: the id of the stance that sits there.
     """
 
     at: tuple[float, float, float]
     radius: float
     turn: float = 0.0
     floor: bool = False
+    stance: str = ""
 
 
 _known: Remembered[Seat | None] = Remembered(gather_face_parts)
@@ -66,10 +67,12 @@ def _found(project: Project, loops: list[Action]) -> Seat | None:
             ahead = 0.08 * (lower - upper)
             place = (float(upper[0] + ahead[0]), float(upper[1]) - THICK * thigh, float(upper[2] + ahead[2]))
             ways = lower - upper
-            return Seat(place, WIDE * thigh, math.atan2(ways[0], ways[2]))
+            return Seat(place, WIDE * thigh, math.atan2(ways[0], ways[2]), stance=loop.id)
         trunk = at[roles["head"]] - at[hips] if "head" in roles else np.zeros(3)
         rises = float(trunk[1]) > UPRIGHT * float(np.linalg.norm(trunk)) > 0
         if at[hips, 1] <= LYING * max(float(standing[hips, 1]), 1e-6) and rises:
             legs_middle = (upper + lower) / 2
-            return Seat((float(legs_middle[0]), 0.0, float(legs_middle[2])), ROUND * thigh, floor=True)
+            return Seat(
+                (float(legs_middle[0]), 0.0, float(legs_middle[2])), ROUND * thigh, floor=True, stance=loop.id
+            )
     return None

@@ -206,6 +206,7 @@ def mannequin_character(look: Look = MANNEQUIN, sculpt: Sculpt = sculpted) -> Ch
             (1, 1, 1, 1),
             eyes if name == "eyeball" else image,
             rough,
+            double_sided=name == "hair",  # locks are sheets: one side of one, seen along it, is a dotted line
             grain=grain_image(name) if name in TILE else None,
         )
         for name, _, rough in MATERIALS

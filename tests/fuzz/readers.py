@@ -24,6 +24,7 @@ from pathlib import Path
 from metagraph.common import files
 from metagraph.errors import FileError
 from metagraph.formats.fbx import processes as fbx_readers
+from tests.formats.props.three_mf_file import write_box
 from tests.fuzz.seed_files import BML, ascii_fbx, model_file, spoilt_archive
 from tests.fuzz.spoiling import JSON, NUMBERS, XML, spoilt_glb, spoilt_json, spoilt_words
 
@@ -272,7 +273,7 @@ def _props() -> dict[str, bytes]:
     for ending in ("obj", "stl", "ply", "off"):
         data = box.export(file_type=ending)
         out[f"a.{ending}"] = data.encode() if isinstance(data, str) else data
-    return {**out, "b.glb": (SAMPLES / "props" / "cup.glb").read_bytes()}
+    return {**out, "a.3mf": write_box(box), "b.glb": (SAMPLES / "props" / "cup.glb").read_bytes()}
 
 
 def every_reader() -> dict[str, Fuzzed]:

@@ -245,6 +245,8 @@ class PreviewPanel(QWidget):
         """Return what is drawn now; called by the view when it paints."""
         shown, seconds, actors = self.performance.shown, self.session.transport.seconds, []
         props: list[Actor] = []
+        seats: list[Actor] = []
+        kind, meshes = self.session.watch.now.seat, self.figures.props.meshes
         for one in shown.everyone:
             pose, skeleton = one.pose(seconds), one.skeleton
             figure = self.figures.of(one) if skeleton is not None else None
@@ -253,7 +255,10 @@ class PreviewPanel(QWidget):
             rotations, positions = skeleton.globals(pose)
             if one.stand is not None:
                 rotations, positions = one.stand.placed(rotations, positions)
-            props += make_prop_actors(one, self.figures.props.meshes, (rotations, positions))
+            own = self.performance.is_documents(one)
+            now = self.performance.document.project.props if own else None
+            props += make_prop_actors(one, meshes, (rotations, positions), now)
+            seats += make_stools(one, kind, figure, meshes, now)
             if one is shown:
                 self._last = (figure, rotations, positions)
             morphs = figure.morph_weights(one.morphs(seconds)) if figure.morphs else None
@@ -262,8 +267,6 @@ class PreviewPanel(QWidget):
             actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
             if one is shown:
                 actors += self.overlays.made(figure, seconds)
-        kind = self.session.watch.now.seat
-        seats = (seat for one in shown.everyone for seat in make_stools(one, kind))
         behind = self.reference.picture if self.reference.behind else None
         scene = Scene((*actors, *props, *seats), picture=behind)
         shape = round(self.view.width() / max(1, self.view.height()), 1)  # frame it again for another size

@@ -12,10 +12,10 @@ from PySide6.QtCore import QPointF, QRectF, Qt, QTimer
 from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
-from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
 from app.look.theme import WindowTheme, get_theme
+from app.stage.over_view import lie_over
 from app.translation import make_lazy_texts, tr, tr_noop
 from metagraph.playback.posing.foot_slides import (
     RATE,

@@ -12,10 +12,10 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
-from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
 from app.look.theme import get_theme
+from app.stage.over_view import lie_over
 from app.stage.playback_source import ShownPlayback
 from app.translation import format_number, tr
 from app.widgets.vocabulary import get_vocabulary_word

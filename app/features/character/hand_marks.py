@@ -12,10 +12,10 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
 from app.features.character.foot_marks import draw_mark
-from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
 from app.look.theme import WindowTheme, get_theme
+from app.stage.over_view import lie_over
 from app.translation import make_lazy_texts, tr
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.posing.foot_slides import FootState

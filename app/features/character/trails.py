@@ -10,9 +10,9 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
-from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
 from app.look.theme import get_theme
+from app.stage.over_view import lie_over
 from app.stage.playback_source import ShownPlayback
 from metagraph.graph import anatomy
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import atan2, cos, degrees, hypot, radians, sin
 
@@ -12,8 +11,9 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
+from app.features.props.placing import Placing
 from app.look.theme import get_theme
-from app.stage.props import PropMeshes, find_height_below
+from app.stage.props import PropMeshes, put_prop_down
 from app.stage.session import StageSession
 from app.translation import tr
 from app.widgets.gesture import PointerHand, PressDrag, Reason
@@ -23,7 +23,6 @@ LEAST = 1.5  # metres from the character that are always in sight
 ROOM = 1.15  # of the farthest prop, what is in sight then
 GRID, STEP = 0.05, 15.0  # metres and degrees that a drag snaps to
 HANDLE = 5.0  # pixels: the radius of what a prop is turned by
-LYING = 0.02  # metres between a prop and what it lies on
 UNKNOWN = 0.15  # metres: half of a prop whose file is not read yet
 NUDGES = {
     Qt.Key.Key_Left: (-GRID, 0.0),
@@ -31,8 +30,6 @@ NUDGES = {
     Qt.Key.Key_Up: (0.0, -GRID),
     Qt.Key.Key_Down: (0.0, GRID),
 }
-
-Change = Callable[[str, Prop, bool], object]  # the id of a prop, how it is now, whether that ends the step
 
 
 @dataclass(frozen=True)
@@ -50,9 +47,9 @@ class FloorPlan(QWidget):
 
     chosen = Signal(str)
 
-    def __init__(self, session: StageSession, meshes: PropMeshes, change: Change, parent: QWidget) -> None:
+    def __init__(self, session: StageSession, meshes: PropMeshes, placing: Placing, parent: QWidget) -> None:
         super().__init__(parent)
-        self.session, self.meshes, self.change = session, meshes, change
+        self.session, self.meshes, self.placing = session, meshes, placing
         self.current = ""
         self.hand = PointerHand()
         self._held = 0.0  # metres in sight, kept while a drag lasts
@@ -129,12 +126,7 @@ class FloorPlan(QWidget):
         """Return a prop at another place of the floor, x and z in metres. What lay on the floor or on a
         larger prop lies on what is below it there; what was lifted off stays as high.
         """
-        project = self.session.document.project
-        before, after = (
-            find_height_below(project, self.meshes, ident, x, z) for x, z in ((prop.at[0], prop.at[2]), to)
-        )
-        high = after if abs(prop.at[1] - before) < LYING else prop.at[1]
-        return msgspec.structs.replace(prop, at=(round(to[0], 4), round(high, 4), round(to[1], 4)))
+        return put_prop_down(self.session.document.project, self.meshes, ident, prop, to)
 
     def set_current(self, ident: str) -> None:
         """Show which prop is chosen."""
@@ -219,7 +211,11 @@ class FloorPlan(QWidget):
             super().keyPressEvent(event)
             return
         to = (now.at[0] + nudge[0], now.at[2] + nudge[1])
-        self.change(self.current, self.put_down(self.current, now, to), not event.isAutoRepeat())
+        self.placing.drag(
+            tr("Move {name}", name=now.name), self.current, self.put_down(self.current, now, to)
+        )
+        if not event.isAutoRepeat():
+            self.placing.end()
 
 
 class _PropDrag(PressDrag):
@@ -229,25 +225,30 @@ class _PropDrag(PressDrag):
         super().__init__()
         self.plan, self.ident, self.before = plan, ident, before
 
+    def words(self) -> str:
+        raise NotImplementedError
+
     def place(self, at: QPointF, free: bool) -> Prop:
         raise NotImplementedError
 
     def update(self, at: QPointF, free: bool = False) -> None:
         if self.caught(at):
-            self.plan.change(self.ident, self.place(at, free), False)
+            self.plan.placing.drag(self.words(), self.ident, self.place(at, free))
 
     def finish(self, at: QPointF) -> None:
         if self.begun:
-            now = self.plan.props.get(self.ident, self.before)
-            self.plan.change(self.ident, now, True)
+            self.plan.placing.end()
 
     def cancel(self, reason: Reason) -> None:
         if self.begun:
-            self.plan.change(self.ident, self.before, True)
+            self.plan.placing.take_back(self.ident)
 
 
 class MoveDrag(_PropDrag):
     """Moves a prop over the floor."""
+
+    def words(self) -> str:
+        return tr("Move {name}", name=self.before.name)
 
     def place(self, at: QPointF, free: bool) -> Prop:
         (x0, z0), (x, z) = self.plan.to_floor(self.origin), self.plan.to_floor(at)
@@ -259,6 +260,9 @@ class MoveDrag(_PropDrag):
 
 class TurnDrag(_PropDrag):
     """Turns a prop about the vertical, so that its front is towards the mouse."""
+
+    def words(self) -> str:
+        return tr("Turn {name}", name=self.before.name)
 
     def place(self, at: QPointF, free: bool) -> Prop:
         x, z = self.plan.to_floor(at)

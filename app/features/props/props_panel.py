@@ -23,20 +23,22 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.props.floor_plan import FloorPlan
+from app.features.props.placing import Placing
 from app.look.names import make_readable_name
-from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.figures import Figures
+from app.stage.seat_fit import SAME, find_carrying_prop, fit_prop_to_seat, measure_seat_height
 from app.stage.session import StageSession
-from app.translation import tr, tr_error, tr_noop
+from app.translation import tr, tr_error, tr_noop, tr_plural
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.errors import FileError
 from metagraph.formats.project.paths import make_path_for_project
 from metagraph.formats.props.reader import ENDINGS
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.editing.props import add_prop, find_grip, remove_prop, set_prop
+from metagraph.graph.editing.props import add_prop, find_grip, remove_prop
 from metagraph.graph.model import Project
 from metagraph.graph.prop import LARGEST, Prop
+from metagraph.graph.seats import find_seat
 from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.roles import find_roles
 
@@ -59,10 +61,11 @@ class PropsPanel(QWidget):
     """Lists the project's props, and edits the chosen one."""
 
     def __init__(
-        self, document: Document, session: StageSession, figures: Figures, jobs: Jobs, parent: QWidget
+        self, session: StageSession, figures: Figures, jobs: Jobs, placing: Placing, parent: QWidget
     ) -> None:
         super().__init__(parent)
-        self.document, self.session, self.figures, self.jobs = document, session, figures, jobs
+        document = self.document = placing.document
+        self.session, self.figures, self.jobs, self.placing = session, figures, jobs, placing
         self.current = ""
         self._showing = False
         self.add_button = QPushButton(tr("Add a prop…"), self)
@@ -72,11 +75,12 @@ class PropsPanel(QWidget):
         self.list = QListWidget(self)
         self.list.setAccessibleName(tr("Props"))
         self.list.currentItemChanged.connect(lambda item, _: self._choose(item))
-        self.plan = FloorPlan(session, figures.props.meshes, self.change, self)
+        self.list.itemClicked.connect(self._choose)
+        self.plan = FloorPlan(session, figures.props.meshes, placing, self)
         self.plan.chosen.connect(self.choose)
         self.empty = QLabel(
             tr(
-                "A prop is a desk, a cup or a wall: an OBJ, STL, PLY, OFF or GLB file. Add one of the "
+                "A prop is a desk, a cup or a wall: an OBJ, STL, PLY, OFF, 3MF or GLB file. Add one of the "
                 "samples, or drop a file of yours on the window."
             ),
             self,
@@ -86,8 +90,9 @@ class PropsPanel(QWidget):
         self._lay_out()
         document.changed.connect(self._follow)
         document.loaded.connect(self.refresh)
-        figures.props.changed.connect(self.refresh)
+        figures.changed.connect(self.refresh)
         session.look.changed.connect(self.plan.update)
+        placing.changed.connect(self._follow_choice)
         self.refresh()
 
     def _lay_out(self) -> None:
@@ -115,10 +120,25 @@ class PropsPanel(QWidget):
         self.numbers["scale", 0].setRange(0.001, LARGEST)
         for column in (1, 3, 5):
             grid.setColumnStretch(column, 1)
-        grid.setRowStretch(3, 1)
+        grid.setRowStretch(4, 1)
+        self.seat_words = QLabel(self.fields)
+        self.seat_words.setWordWrap(True)
+        self.seat_button = QPushButton(tr("Fit to who sits"), self.fields)
+        self.seat_button.setToolTip(
+            tr("Makes the prop as high as the body above it: larger or smaller, or lifted if it is")
+        )
+        self.seat_button.clicked.connect(self.fit_to_seat)
+        grid.addWidget(self.seat_words, 3, 0, 1, 4)
+        grid.addWidget(self.seat_button, 3, 4, 1, 2)
+        self.outside = QLabel(self)
+        self.outside.setWordWrap(True)
+        self.copy_button = QPushButton(tr("Copy into the project's folder"), self)
+        self.copy_button.clicked.connect(self.copy_outside)
         left = QVBoxLayout()
         left.setSpacing(8)
         left.addLayout(buttons)
+        left.addWidget(self.outside)
+        left.addWidget(self.copy_button, 0, Qt.AlignmentFlag.AlignLeft)
         left.addWidget(self.empty)
         left.addWidget(self.list, 1)
         inner = QWidget(self)
@@ -178,6 +198,7 @@ class PropsPanel(QWidget):
     def refresh(self) -> None:
         """Show the props as they are now."""
         props = self.document.project.props
+        self.current = self.placing.ident or self.current
         if self.current not in props:
             self.current = next(iter(props), "")
         self._showing = True
@@ -200,7 +221,48 @@ class PropsPanel(QWidget):
         for widget in (self.list, self.plan, self.fields):
             widget.setVisible(bool(props))
         self.empty.setVisible(not props)
+        self._show_outside()
         self.plan.set_current(self.current)
+
+    def _find_outside(self) -> dict[str, Path]:
+        """Return the files of props outside the project's folder, by their ids; none until it has one."""
+        from metagraph.formats.props.copying import find_outside_props
+
+        folder = self.document.folder
+        return {} if folder is None else find_outside_props(self.document.project, folder)
+
+    def _show_outside(self) -> None:
+        """Say which props do not go where the project's folder goes."""
+        found = self._find_outside()
+        names = ", ".join(dict.fromkeys(place.name for place in found.values()))
+        self.outside.setText(
+            tr("Outside the project's folder: {names}. Who gets the folder does not get them.", names=names)
+        )
+        for widget in (self.outside, self.copy_button):
+            widget.setVisible(bool(found))
+
+    def copy_outside(self) -> None:
+        """Copy the files of props outside the project's folder into it on a thread, and use the copies."""
+        from metagraph.formats.props.copying import copy_props, set_prop_paths
+
+        found, folder = self._find_outside(), self.document.folder
+        if folder is None or not found:
+            return
+
+        def use(result: tuple[dict[str, str], list[FileError]]) -> None:
+            paths, bad = result
+            if paths and folder == self.document.folder:
+                words = tr_plural("Copy {count} prop", "Copy {count} props", len(paths))
+                self.document.edit(words, lambda project: set_prop_paths(project, paths))
+            for error in bad:
+                self.document.failed.emit(tr_error(error))
+
+        self.jobs.start(
+            "copy props",
+            lambda _: copy_props(found, folder),
+            use,
+            lambda error: self.document.failed.emit(tr_error(error)),
+        )
 
     def _show_fields(self) -> None:
         prop = self.prop or Prop(name="", path="")
@@ -216,6 +278,43 @@ class PropsPanel(QWidget):
         for joint in [*first, *(name for name in names if name not in first)]:
             self.joint.addItem(make_readable_name(joint), joint)
         self.joint.choose(prop.joint)
+        self._show_seat()
+
+    def _measure_seat(self) -> tuple[float, float] | None:
+        """Return how high the chosen prop is below who sits on it, and how high it should be, metres; None if
+        nobody sits on it.
+        """
+        project, meshes = self.document.project, self.figures.props.meshes
+        seat = find_seat(project) if self.current in project.props else None
+        if seat is None or project.skeleton is None:
+            return None
+        ident, top = find_carrying_prop(project, meshes, seat)
+        figure = self.figures.figure(project.skeleton) if ident == self.current else None
+        return (top, measure_seat_height(project, seat, figure)) if figure is not None else None
+
+    def _show_seat(self) -> None:
+        """Say how well the chosen prop carries who sits on it."""
+        found, prop = self._measure_seat(), self.prop
+        words = ""
+        if found is not None and prop is not None:
+            off = round((found[0] - found[1]) * 100)
+            if off > 0:
+                words = tr("The body sinks {off} cm into {name}", off=off, name=prop.name)
+            elif off < 0:
+                words = tr("The body sits {off} cm above {name}", off=-off, name=prop.name)
+            else:
+                words = tr("The body sits on {name}", name=prop.name)
+        self.seat_words.setText(words)
+        self.seat_words.setVisible(bool(words))
+        self.seat_button.setVisible(bool(words))
+        self.seat_button.setEnabled(found is not None and abs(found[0] - found[1]) > SAME)
+
+    def fit_to_seat(self) -> None:
+        """Make the chosen prop as high as who sits on it."""
+        found, prop = self._measure_seat(), self.prop
+        if found is not None and prop is not None:
+            fitted = fit_prop_to_seat(prop, *found)
+            self.placing.edit(tr("Fit {name} to who sits", name=prop.name), self.current, fitted)
 
     # --- choosing and editing
 
@@ -225,21 +324,14 @@ class PropsPanel(QWidget):
 
     def choose(self, ident: str) -> None:
         """Choose a prop by its id; "" chooses none other."""
-        if ident and ident != self.current:
-            self.current = ident
+        if ident:
+            self.placing.choose(ident)
+
+    def _follow_choice(self) -> None:
+        """Show the prop that was chosen, in the view perhaps; the last one if none is."""
+        if self.placing.ident and self.placing.ident != self.current:
+            self.current = self.placing.ident
             self.refresh()
-
-    def change(self, ident: str, prop: Prop, ends: bool) -> None:
-        """Change a prop. ends: whether what follows is another step."""
-        self._edit(tr("Move {name}", name=prop.name), ident, prop, f"prop {ident}")
-        if ends:
-            self.document.finish_merging()
-
-    def _edit(self, words: str, ident: str, prop: Prop, merge: str | None = None) -> None:
-        try:
-            self.document.edit(words, lambda project: set_prop(project, ident, prop), merge=merge)
-        except EditError as error:
-            self.document.failed.emit(tr_error(error))
 
     def _set_number(self, key: tuple[str, int], value: float) -> None:
         prop = self.prop
@@ -247,14 +339,14 @@ class PropsPanel(QWidget):
             return
         name, place = key
         if name == "scale":
-            self._edit(
+            self.placing.edit(
                 tr("Resize {name}", name=prop.name), self.current, msgspec.structs.replace(prop, scale=value)
             )
             return
         values = list(getattr(prop, name))
         values[place] = round(value, 4)
         changed = msgspec.structs.replace(prop, **{name: tuple(values)})
-        self._edit(tr("Move {name}", name=prop.name), self.current, changed)
+        self.placing.edit(tr("Move {name}", name=prop.name), self.current, changed)
 
     def _set_joint(self) -> None:
         prop, joint = self.prop, str(self.joint.currentData() or "")
@@ -265,7 +357,7 @@ class PropsPanel(QWidget):
             at, turn = find_grip(self.document.project, joint)
         changed = msgspec.structs.replace(prop, joint=joint, at=at, turn=turn)
         words = tr("Carry {name}", name=prop.name) if joint else tr("Put {name} down", name=prop.name)
-        self._edit(words, self.current, changed)
+        self.placing.edit(words, self.current, changed)
 
     def remove(self) -> None:
         """Remove the chosen prop."""

@@ -1,9 +1,9 @@
-"""Read props: meshes that stand still, from OBJ, STL, PLY, OFF and GLB files, through trimesh."""
+"""Read props: meshes that stand still, from OBJ, STL, PLY, OFF and GLB files, through trimesh, and 3MF."""
 
 from __future__ import annotations
 
 import io
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +16,13 @@ from metagraph.common.wording import phrase, plural_phrase
 from metagraph.errors import FileError
 from metagraph.formats.props.shapes import (
     MOST_TRIANGLES,
+    WIDEST,
     encode_picture,
     find_drawable,
+    has_inside,
     make_colour_picture,
     make_normals,
+    measure_volume,
     thin_out,
 )
 from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
@@ -28,10 +31,13 @@ from metagraph.motion.skeleton import Skeleton
 Array = NDArray[Any]
 
 PROP_FILE = 512 * MIB
-ENDINGS = (".obj", ".stl", ".ply", ".off", ".glb")
+ENDINGS = (".obj", ".stl", ".ply", ".off", ".glb", ".3mf")
 REMEDY = phrase("Export it as GLB from the program that made it.")
 GREY = (0.35, 0.35, 0.36, 1.0)  # linear, of what has no colour
-_IN_METRES = (".glb",)  # the others do not say their unit
+_IN_METRES = (".glb", ".3mf")  # once read; the others do not say their unit
+_SAY_SIDES = (".glb",)  # which of their triangles are seen from both sides
+FARTHEST, SMALLEST = 1e5, 1e-3  # metres: larger than this is broken, smaller is not seen
+AWAY = 20.0  # metres, and times its size, from its origin: what is farther away is moved there
 _CENTIMETRES, _MILLIMETRES = 20.0, 500.0  # what is larger than this many units is not in metres, centimetres
 _BESIDE = (".png", ".jpg", ".jpeg", ".bmp", ".tga", ".webp", ".mtl")
 
@@ -41,8 +47,9 @@ def read_prop(path: str | Path) -> CharacterMesh:
     """Return the mesh of a prop, in metres with y up, held whole by one joint, "Prop", at its origin.
 
     Its `notes` say what was assumed, repaired and left out: the unit, triangles without an area, pictures
-    that are not there, triangles beyond `MOST_TRIANGLES`. Raises FileError for a file that is none of
-    `ENDINGS`, is broken, or has no triangle.
+    that are not there or are too large, triangles beyond `MOST_TRIANGLES`, surfaces that were inside out, a
+    place far from its origin. A surface with a hole is drawn from both sides. Raises FileError for a file
+    that is none of `ENDINGS`, is broken, or has no triangle.
     """
     path = Path(path)
     ending = path.suffix.lower()
@@ -53,14 +60,19 @@ def read_prop(path: str | Path) -> CharacterMesh:
             "",
             phrase("Known are {endings}. {remedy}", endings=", ".join(ENDINGS), remedy=REMEDY),
         )
-    import trimesh
-
     notes: list[str] = []
-    beside: Any = _Beside(path.parent, notes)
-    content = io.BytesIO(read_file(path, PROP_FILE))
+    content = read_file(path, PROP_FILE)
     try:
-        scene = trimesh.load_scene(content, file_type=ending[1:], resolver=beside, process=False)
-        parts = _list_parts(scene)
+        if ending == ".3mf":
+            parts = _list_three_parts(content)
+        else:
+            import trimesh
+
+            beside: Any = _Beside(path.parent, notes)
+            scene = trimesh.load_scene(
+                io.BytesIO(content), file_type=ending[1:], resolver=beside, process=False
+            )
+            parts = _list_parts(scene)
     except FileError:
         raise
     except Exception as error:  # trimesh raises many kinds on broken files
@@ -69,7 +81,27 @@ def read_prop(path: str | Path) -> CharacterMesh:
     if not parts:
         raise FileError(path, phrase("it has no triangle"), "", REMEDY)
     unit = _find_unit(parts, notes) if ending not in _IN_METRES else 1.0
-    return _Builder(path.stem, notes, ending in _IN_METRES).build(path, parts, unit)
+    return _Builder(path.stem, notes, ending in _SAY_SIDES).build(path, parts, unit)
+
+
+def list_files_beside(path: Path) -> list[Path]:
+    """Return the files beside a prop's that belong to it: the materials and pictures of an OBJ. Raises
+    FileError if it cannot be read.
+    """
+    if path.suffix.lower() != ".obj":
+        return []
+    import trimesh
+
+    beside: Any = _Beside(path.parent, [])
+    try:
+        content = io.BytesIO(read_file(path, PROP_FILE))
+        trimesh.load_scene(content, file_type="obj", resolver=beside, process=False)
+    except FileError:
+        raise
+    except Exception as error:  # as above
+        why = phrase("it cannot be read ({error})", error=str(error)[:200])
+        raise FileError(path, why, "", REMEDY) from None
+    return list(dict.fromkeys(beside.used))
 
 
 @dataclass(frozen=True)
@@ -87,6 +119,7 @@ class _Beside:
 
     folder: Path
     notes: list[str]
+    used: list[Path] = field(default_factory=list)
 
     def get(self, name: str) -> bytes:
         kind = Path(str(name).replace("\\", "/")).name
@@ -94,6 +127,7 @@ class _Beside:
         if place.suffix.lower() not in _BESIDE or not is_file(place):
             self.notes.append(phrase("'{name}' is not beside it and was left out", name=kind[:80]))
             raise FileNotFoundError(kind)
+        self.used.append(place)
         return read_file(place, PROP_FILE)
 
     def __getitem__(self, name: str) -> bytes:
@@ -116,6 +150,26 @@ def _list_parts(scene: Any) -> list[_Part]:
             triangles = triangles[:, ::-1]
         out.append(_Part(positions, triangles, mesh.visual))
     return out
+
+
+@dataclass(frozen=True)
+class _Painted:
+    """How a part looks whose triangles have colours, as trimesh has it; none if `face_colors` is None."""
+
+    face_colors: Array | None
+
+    @property
+    def kind(self) -> str | None:
+        return None if self.face_colors is None else "face"
+
+
+def _list_three_parts(content: bytes) -> list[_Part]:
+    from metagraph.formats.props.three_mf import read_three_meshes
+
+    return [
+        _Part(mesh.positions, mesh.triangles, _Painted(mesh.colours))
+        for mesh in read_three_meshes(content, PROP_FILE)
+    ]
 
 
 def _find_unit(parts: list[_Part], notes: list[str]) -> float:
@@ -143,7 +197,7 @@ class _Builder:
 
     def build(self, path: Path, parts: list[_Part], unit: float) -> CharacterMesh:
         """Return the mesh of all parts. Raises FileError if nothing of them can be drawn."""
-        total, left = sum(len(part.triangles) for part in parts), 0
+        total, left, turned = sum(len(part.triangles) for part in parts), 0, 0
         share = min(1.0, MOST_TRIANGLES / total)
         for part in parts:
             positions, triangles = part.positions * unit, part.triangles
@@ -155,6 +209,10 @@ class _Builder:
             material, uvs = self._describe(part, drawn if share == 1.0 else None)
             if share < 1.0:
                 positions, triangles = thin_out(positions, triangles, max(1, int(share * len(triangles))))
+            if not has_inside(positions, triangles):
+                material = replace(material, double_sided=material.double_sided or not self.linear)
+            elif measure_volume(positions, triangles) < 0:
+                triangles, turned = triangles[:, ::-1], turned + 1
             self.arrays.append(make_normals(positions, triangles, uvs))
             self.materials.append(material)
         if not self.arrays:
@@ -169,6 +227,9 @@ class _Builder:
                     left,
                 )
             )
+        if turned:
+            self.notes.append(phrase("it was inside out and was turned"))
+        self._check_place(path)
         kept = sum(len(a[3]) for a in self.arrays)
         if share < 1.0:
             self.notes.append(
@@ -177,6 +238,27 @@ class _Builder:
                 )
             )
         return self._join()
+
+    def _check_place(self, path: Path) -> None:
+        """Refuse what is larger than any set, note what is too small to be seen, and move what is far from
+        its origin onto it.
+        """
+        points = np.concatenate([a[0] for a in self.arrays])
+        low, high = points.min(0), points.max(0)
+        size = float((high - low).max())
+        if size > FARTHEST:
+            raise FileError(path, phrase("it is {size:.3g} m large", size=size), "", REMEDY)
+        if size < SMALLEST:
+            self.notes.append(
+                phrase("it is only {size:.2g} mm large; enlarge it with its size", size=size * 1e3)
+            )
+        foot = np.array([(low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2])
+        away = float(np.linalg.norm((low + high) / 2))
+        if away > AWAY * max(1.0, size):
+            self.arrays = [(a[0] - foot, *a[1:]) for a in self.arrays]
+            self.notes.append(
+                phrase("it is {away:,.0f} m away from its origin and was moved there", away=away)
+            )
 
     def _describe(self, part: _Part, drawn: Array | None) -> tuple[MeshMaterial, Array | None]:
         """Return a part's material, and its texture coordinates. drawn: which triangles are drawn; None for a
@@ -192,8 +274,9 @@ class _Builder:
                 and drawn is not None
                 and uv is not None
                 and uv.shape == (len(part.positions), 2)
-                and image.width * image.height <= PICTURE_PIXELS
             )
+            if usable:
+                usable = self._check_picture(image)
             colour = self._colour(material.main_color)
             double = bool(getattr(material, "doubleSided", False))
             if not usable or uv is None:
@@ -207,6 +290,24 @@ class _Builder:
                 return MeshMaterial(self.name, (1.0, 1.0, 1.0, 1.0), picture), uv
             return MeshMaterial(self.name, self._colour(np.append(np.median(colours, axis=0), 255))), None
         return MeshMaterial(self.name, GREY), None
+
+    def _check_picture(self, image: Any) -> bool:
+        """Return whether a picture can be used; note what is left out of it."""
+        size = {"width": image.width, "height": image.height}
+        if image.width * image.height > PICTURE_PIXELS:
+            self.notes.append(
+                phrase("its picture of {width:,} × {height:,} pixels is too large and was left out", **size)
+            )
+            return False
+        if max(image.size) > WIDEST:
+            self.notes.append(
+                phrase(
+                    "its picture of {width:,} × {height:,} pixels was reduced to {most:,}",
+                    most=WIDEST,
+                    **size,
+                )
+            )
+        return True
 
     def _colour(self, rgba: Array) -> tuple[float, float, float, float]:
         """Return 8-bit values as linear 0..1, without transparency, which is not drawn."""

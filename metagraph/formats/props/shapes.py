@@ -12,6 +12,7 @@ Array = NDArray[Any]
 MOST_TRIANGLES = 200_000  # of a prop; more take longer to draw than the character
 CREASE = 0.766  # cosine of 40 degrees: edges sharper than that are drawn as edges
 FINEST, COARSEST = 9, 3  # the grid that points are gathered on has 2 to the power of this many cells along
+WIDEST = 2048  # pixels of a picture; larger ones are reduced
 _PIXELS = 64  # width and height of a picture of colours
 
 
@@ -24,6 +25,23 @@ def find_drawable(positions: Array, triangles: Array) -> Array:
     with np.errstate(invalid="ignore", over="ignore"):
         area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     return np.asarray(there & np.isfinite(area) & (area > 0))
+
+
+def has_inside(positions: Array, triangles: Array) -> bool:
+    """Return whether a surface has an inside: each edge of its triangles is there once in each direction.
+    Points at one place are one point.
+    """
+    where = _find_once(positions.round(7))[1][triangles]
+    edges = np.concatenate([where[:, [0, 1]], where[:, [1, 2]], where[:, [2, 0]]])
+    key = (edges[:, 0].astype(np.int64) << 32) | edges[:, 1]
+    back = (edges[:, 1].astype(np.int64) << 32) | edges[:, 0]
+    return bool(np.array_equal(np.sort(key), np.sort(back)))
+
+
+def measure_volume(positions: Array, triangles: Array) -> float:
+    """Return how much a closed surface holds, cubic metres; negative if it is inside out."""
+    a, b, c = (positions[triangles[:, n]] - positions.mean(0) for n in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
 def thin_out(positions: Array, triangles: Array, most: int) -> tuple[Array, Array]:
@@ -123,14 +141,14 @@ def make_colour_picture(colours: Array) -> tuple[bytes, Array]:
 
 
 def encode_picture(picture: Any) -> bytes:
-    """Return a picture of Pillow's as PNG, at most 2,048 pixels wide and high."""
+    """Return a picture of Pillow's as PNG, at most `WIDEST` pixels wide and high."""
     import io
 
     if picture.mode not in ("RGB", "RGBA"):
         picture = picture.convert("RGBA")
-    if max(picture.size) > 2048:
+    if max(picture.size) > WIDEST:
         picture = picture.copy()
-        picture.thumbnail((2048, 2048))
+        picture.thumbnail((WIDEST, WIDEST))
     out = io.BytesIO()
     picture.save(out, "PNG")
     return out.getvalue()

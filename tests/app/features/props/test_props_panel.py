@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -11,8 +12,10 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 
+from metagraph.formats.store import open_project
 from metagraph.graph.editing.props import add_prop
 from metagraph.graph.prop import Prop
+from metagraph.graph.seats import find_seat
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
@@ -242,3 +245,42 @@ def test_a_file_that_is_added_is_read_once(toys, panel, box, monkeypatch):
     put(toys, panel, box)
     toys.settle()
     assert len(times) == 1
+
+
+def test_a_chair_below_who_sits_says_how_it_fits_and_is_fitted_as_one_step(toys):
+    samples = Path(__file__).resolve().parents[4] / "sample_clips"
+    project = open_project(samples / "seated.metagraph.yaml").project
+    seat = find_seat(project)
+    assert seat is not None
+    chair = Prop(name="chair", path=str(samples / "props" / "chair.glb"), at=(0, 0, seat.at[2]), scale=1.2)
+    project, ident = add_prop(replace(project, character=str(samples / "ben.glb")), chair)
+    toys.document.load(project, None)
+    toys.shell.show("props")
+    panel = toys.shell.panel("props")
+    toys.wait(lambda: "sinks" in panel.seat_words.text())
+    assert panel.seat_button.isVisibleTo(panel) and panel.seat_button.isEnabled()
+    QTest.mouseClick(panel.seat_button, Qt.MouseButton.LeftButton)
+    assert panel.seat_words.text() == "The body sits on chair" and not panel.seat_button.isEnabled()
+    assert 0.8 < panel.document.project.props[ident].scale < 1.2
+    assert panel.document.undo_stack.undoText().startswith("Fit chair to who sits")
+    panel.numbers["at", 0].setValue(2.0)
+    assert panel.seat_words.text() == "" and not panel.seat_button.isVisibleTo(panel)
+    toys.docks["props"].close()
+
+
+def test_props_outside_the_folder_are_said_and_copied_into_it_as_one_step(toys, panel, box, tmp_path):
+    put(toys, panel, box)
+    assert not panel.copy_button.isVisibleTo(panel), "a project without a file has no folder yet"
+    place = tmp_path / "show" / "p.metagraph.yaml"
+    place.parent.mkdir()
+    panel.document.save(place)
+    panel.refresh()
+    assert "box.stl" in panel.outside.text() and panel.copy_button.isVisibleTo(panel)
+    QTest.mouseClick(panel.copy_button, Qt.MouseButton.LeftButton)
+    toys.wait(lambda: only(panel).path == "props/box.stl")
+    assert (place.parent / "props" / "box.stl").read_bytes() == box.read_bytes()
+    assert not panel.copy_button.isVisibleTo(panel) and not panel.outside.isVisibleTo(panel)
+    assert panel.document.undo_stack.undoText().startswith("Copy 1 prop")
+    toys.wait(lambda: count_drawn(toys) == 1)
+    panel.document.undo()
+    assert only(panel).path == "../box.stl"
