@@ -125,3 +125,9 @@ def test_who_sits_on_the_floor_and_a_carried_chair_carry_nobody() -> None:
     joint = project.skeleton.names[0]  # type: ignore[union-attr]
     held = {ident: Prop(name="chair", path="props/chair.glb", joint=joint)}
     assert find_carrying_prop(replace(project, props=held), meshes, seat) == ("", 0.0)
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_the_feet_of_who_sits_reach_the_floor(name: str) -> None:
+    points, triangles = place_body(body(name))
+    assert -0.015 < float(points[np.unique(triangles), 1].min()) < 0.015
