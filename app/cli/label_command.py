@@ -226,7 +226,8 @@ def _tell_one_sided(one_sided: Sequence[OneSided], mirrored: bool) -> None:
     _tell("mirrored" if mirrored else "one arm", map(describe_one_sided, one_sided))
     if one_sided and not mirrored:
         count = _count_lacking(one_sided)
-        print(f"note: --twins adds {count} mirrored clips for the other arm", file=sys.stderr)
+        clips = "clip" if count == 1 else "clips"
+        print(f"note: --twins adds {count} mirrored {clips} for the other arm", file=sys.stderr)
 
 
 def add_twins(project: Project, one_sided: Sequence[OneSided], folder: Path) -> Project:

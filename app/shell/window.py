@@ -188,7 +188,9 @@ class Window(QMainWindow):
     def _add_toggles(self) -> None:
         panels = self.menus["&View"].addMenu(tr("Panels"))
         for dock in self.places.docks.values():
-            panels.addAction(dock.toggleViewAction())
+            toggle = dock.toggleViewAction()
+            toggle.triggered.connect(lambda on, dock=dock: dock.raise_() if on else None)
+            panels.addAction(toggle)
 
     def _wire(self) -> None:
         d, s, shell = self.shell.document, self.shell.stage.session, self.shell

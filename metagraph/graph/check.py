@@ -156,7 +156,7 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
                 "warning",
                 "dead-end",
                 phrase("stance '{name}' has no transition out of it", name=stance.name),
-                phrase("Drop a clip on its transitions node."),
+                phrase("Drop a clip on its Transition node."),
             )
         if graph.start in graph.stances and stance.id not in led_to:
             yield at(

@@ -27,8 +27,8 @@ _DOES: Mapping[Mode, Phrase] = {
     "talking": phrase("talks"),
 }
 _NODS = phrase(
-    "Add nods and shakes of the head alone: drop a clip that rests on the Stance node of the layer 'head', "
-    "and them on its Gesture node. Then it nods while it listens."
+    "Add clips of the head alone: drop one that rests on the Stance node of the layer 'head', then nods and "
+    "shakes on its Gesture node. The character then nods while it listens."
 )
 _SHIFTS = phrase("Drop clips that shift the weight on the Fidget node of the layer 'body'.")
 _GESTURES = phrase("Drop gestures on the Gesture node of the layer 'arms'.")
@@ -66,9 +66,9 @@ def _describe(project: Project, layer: Layer, modes: list[Mode], resting: list[L
         moved = [x for x in resting if project.graphs[x].weight(_PART[layer]) > 0]
         if moved:
             words = phrase(
-                "{words}: it has no clips of its own, and only clips of {others} move it",
+                "{words}: it has no clips of its own, and moves only with clips of {others}",
                 words=words,
-                others=join_phrases([_NAMES[x] for x in moved], ", "),
+                others=join_phrases([_NAMES[x] for x in moved], " and "),
             )
         remedy = {"body": _SHIFTS, "arms": _GESTURES, "head": _NODS}[layer]
         if layer == "body" and moved:  # a second layer that moves the legs would add up with the first

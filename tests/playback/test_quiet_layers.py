@@ -23,7 +23,7 @@ def test_a_set_of_whole_bodies_on_one_layer_lacks_nods_and_is_told_what_moves_it
     alone = toy.project("arms")
     assert "Fidget node of the layer 'body'" in told(alone)["body"]
     found = told(edits.set_weight(alone, "arms", "legs", 1.0))
-    assert "nods" in found["head"] and "only clips of the arms move it" in found["head"]
+    assert "nods" in found["head"] and "moves only with clips of the arms" in found["head"]
     assert "Fidget node of the arms" in found["body"], "another layer for the legs would add up"
 
 

@@ -96,7 +96,11 @@ class CharacterGallery(QDialog):
 
     def _fill(self) -> None:
         current = self._current()
-        ours = [CharacterCard(name, file) for name, file in OURS.items() if file.is_file()]
+        ours = [
+            CharacterCard(name, file, tr("Comes with Metagraph, with a face of 52 shapes."))
+            for name, file in OURS.items()
+            if file.is_file()
+        ]
         choices = [
             *ours,
             CharacterCard(tr("Default body"), None, tr("A mannequin in the measures of your skeleton.")),

@@ -390,6 +390,7 @@ class ExportDialog(QDialog):
         if self._measuring is not None:
             self._measuring.cancel()
             self._measuring = None
+            self.sized.setText("")
 
     def _show_size(self) -> None:
         size = self.sizes.get(self._wanted())

@@ -238,7 +238,9 @@ class ProblemsPanel(QWidget):
         if fresh:
             self.tree.scrollToTop()
         self.none.setText(
-            tr("No problems. Every state can be reached and left.")
+            tr("Nothing to check yet: no clip is in the graph.")
+            if not project.uses and not project.drawn
+            else tr("No problems. Every state can be reached and left.")
             if self.session.onstage.mode == "manual"
             else tr("No problems. Every stance has a resting clip, a way out and a way back.")
         )

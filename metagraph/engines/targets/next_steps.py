@@ -258,6 +258,14 @@ def list_steps(target: str, stem: str) -> tuple[str, ...]:
     return tuple(phrase(str(step), stem=stem) for step in find_next_steps(target).steps)
 
 
+# Targets whose runtime plans live.
+PLAYED = ("javascript", "godot", "unity", "cpp", "unreal", "metagraph")
+IDLES = (
+    "The preview of Metagraph plays a character that talks. Here it idles until you ask for another mode: "
+    '`{"do": "mode", "mode": "talking"}`.'
+)
+
+
 def make_readme(
     target: str, title: str, what: str, stem: str, files: Iterable[str], losses: Sequence[str]
 ) -> str:
@@ -271,6 +279,8 @@ def make_readme(
     lines += ["", "## Steps", "", *steps] if steps else []
     if found.code:
         lines += ["", f"```{found.language}", found.code.replace("{stem}", stem).rstrip(), "```"]
+    if target in PLAYED:
+        lines += ["", IDLES]
     lines += ["", f"The manual's page `{found.page}` has more.", "", "## Files", "", "| File | What it is |"]
     lines += ["|---|---|"]
     lines += [f"| `{name}` | {words} |" for name, words in describe_files(target, stem, files)]

@@ -88,6 +88,7 @@ def test_triangles_have_the_colours_of_their_palette(tmp_path: Path) -> None:
         ),
         (write_box(BOX)[:90], "zip"),
     ],
+    ids=["empty", "missing object", "short transform", "in itself", "cut off"],
 )
 def test_broken_files_are_refused(tmp_path: Path, content: bytes, why: str) -> None:
     with pytest.raises(FileError, match=why):

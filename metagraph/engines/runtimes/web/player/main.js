@@ -45,6 +45,7 @@ element.addEventListener("load", () => {
   panel.replaceChildren();
   document.getElementById("answers")?.remove();
   const asked = fillPanel(panel, element);
+  if (options.get("idle") !== "0") asked.be("talking"); // as the preview plays it
   parts = { asked, lanes: new Lanes(document.getElementById("lanes"), element.object) };
   window.metagraph = {
     element, object: element.object, stage: element.stage,

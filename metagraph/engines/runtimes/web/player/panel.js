@@ -2,6 +2,7 @@
 
 const LAYERS = ["arms", "head", "body"];
 const ANSWERS = 6; // of what was asked last
+const MODES = ["idle", "listening", "talking", "thinking", "reacting"];
 
 /** Make an element. @param {string} tag @param {object} [properties] @param {...(Node | string)} children */
 function make(tag, properties = {}, ...children) {
@@ -38,6 +39,22 @@ export function fillPanel(panel, element) {
   const pause = make("button", { type: "button", title: "Pause (Space)" });
   pause.onclick = () => (element.paused = !element.paused);
   panel.append(row(make("h1", { textContent: graph.name, title: graph.name }), pause));
+
+  let mode = "idle";
+  const modes = MODES.map((name) => make("button", { type: "button", textContent: name, onclick: () => be(name) }));
+  /** Let the character be in a mode from now on. @param {string} name */
+  function be(name) {
+    mode = name;
+    ask({ do: "mode", mode: name }, name);
+  }
+  panel.append(make("h2", { textContent: "Mode" }), row(...modes));
+
+  const declared = Object.entries(character.describe().parameters ?? {});
+  if (declared.length) panel.append(make("h2", { textContent: "Parameters" }));
+  for (const [name, parameter] of declared) {
+    const control = makeControl(parameter, (value) => told.unshift({ id: character.setParameter(name, value), words: name }));
+    if (control) panel.append(make("label", { className: "row", title: parameter.about }, name, control));
+  }
 
   for (const layer of LAYERS) {
     const { actions, stances: known } = graph.layers[layer];
@@ -109,6 +126,7 @@ export function fillPanel(panel, element) {
   function update() {
     pause.textContent = element.paused ? "Play" : "Pause";
     follow.setAttribute("aria-pressed", String(following));
+    for (const button of modes) button.setAttribute("aria-pressed", String(button.textContent === mode));
     for (const [go, [layer, stance]] of stances) go.setAttribute("aria-pressed", String(resting(character, layer) === stance));
     const rows = told.map(({ id, words }) => ({ words, answer: character.answer(id) }));
     const key = JSON.stringify(rows);
@@ -117,7 +135,22 @@ export function fillPanel(panel, element) {
     answers.replaceChildren(...rows.map(({ words, answer }) => make("li", { className: answer.state, textContent: `${words}: ${worded(answer)}` })));
   }
   update();
-  return { update, follow: followPointer };
+  return { update, follow: followPointer, be };
+}
+
+/** Return the control of a parameter, null for lists and points. @param {object} parameter as `describe()` has it */
+function makeControl({ type, initial, least, most, choices }, set) {
+  if (type === "trigger") return make("button", { type: "button", textContent: "Play", onclick: () => set() });
+  if (type === "boolean") return make("input", { type: "checkbox", checked: initial === true, onchange: (e) => set(e.target.checked) });
+  if (type === "number") {
+    const slider = make("input", { type: "range", min: least, max: most, step: (most - least) / 100, oninput: (e) => set(Number(e.target.value)) });
+    slider.value = initial ?? least;
+    return slider;
+  }
+  if (type !== "enum") return null;
+  const select = make("select", { onchange: (e) => set(e.target.value) }, ...choices.map((name) => new Option(name)));
+  select.value = initial ?? choices[0];
+  return select;
 }
 
 /** Return the stance a layer is in, or leaves. */
