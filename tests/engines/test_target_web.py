@@ -40,7 +40,7 @@ def page(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-OPEN = {"url": f"?seed={SEED}&paused", "until": "window.metagraph"}
+OPEN = {"url": f"?seed={SEED}&mode=&paused", "until": "window.metagraph"}
 SEEK = {"run": f"metagraph.seek({TIME})"}
 JOINTS = """(() => { const out = {}; metagraph.object.scene.updateMatrixWorld(true);
   for (const { bone, joint } of metagraph.object.joints) {

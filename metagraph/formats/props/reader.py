@@ -296,15 +296,20 @@ class _Builder:
         size = {"width": image.width, "height": image.height}
         if image.width * image.height > PICTURE_PIXELS:
             self.notes.append(
-                phrase("its picture of {width:,} × {height:,} pixels is too large and was left out", **size)
+                phrase(
+                    "its picture of {width:,} × {height:,} pixels is too large and was left out",
+                    width=size["width"],
+                    height=size["height"],
+                )
             )
             return False
         if max(image.size) > WIDEST:
             self.notes.append(
                 phrase(
                     "its picture of {width:,} × {height:,} pixels was reduced to {most:,}",
+                    width=size["width"],
+                    height=size["height"],
                     most=WIDEST,
-                    **size,
                 )
             )
         return True

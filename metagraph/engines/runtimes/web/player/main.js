@@ -1,6 +1,6 @@
 /**
  * The page: the character, and behind a switch what may be asked of it and what is planned. Its address may say `?panel`, `?seed=7`,
- * `?idle=0`, `?paused`, `?camera=face`, `?export=other.json`. `window.metagraph` is for scripts and tests.
+ * `?idle=0`, `?mode=listening`, `?paused`, `?camera=face`, `?export=other.json`. `window.metagraph` is for scripts and tests.
  */
 
 import "../metagraph-character.js";
@@ -45,7 +45,8 @@ element.addEventListener("load", () => {
   panel.replaceChildren();
   document.getElementById("answers")?.remove();
   const asked = fillPanel(panel, element);
-  if (options.get("idle") !== "0") asked.be("talking"); // as the preview plays it
+  const mode = options.get("mode") ?? "talking"; // as the preview plays it
+  if (mode && options.get("idle") !== "0") asked.be(mode);
   parts = { asked, lanes: new Lanes(document.getElementById("lanes"), element.object) };
   window.metagraph = {
     element, object: element.object, stage: element.stage,
