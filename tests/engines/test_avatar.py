@@ -117,6 +117,7 @@ def tall_ben(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make_avatar(folder / "ben.glb", "mixamo", unit=100, tall=1.1, legs=1.2, bare=True)
 
 
+@pytest.mark.nightly
 def test_a_taller_ben_of_mixamo_moves_as_python_retargets_him(sample_export: Path, tall_ben: Path) -> None:
     found = played(sample_export, tall_ben)
     clip = pose_clip(sample_export, found)

@@ -229,6 +229,7 @@ export function play(character: Character): string {
 TYPES = Path(os.environ.get("NPM_PACKAGES", MODULES)) / "typescript" / "bin" / "tsc"
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(not TYPES.is_file(), reason="needs npm's typescript")
 def test_typescript_knows_the_types(project: Project, tmp_path: Path) -> None:
     for name, text in make_wrapper(project, "stick", "javascript").items():

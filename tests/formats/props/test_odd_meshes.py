@@ -126,6 +126,7 @@ def test_a_picture_that_is_too_large_is_reduced_and_that_is_said(tmp_path: Path)
     assert [str(note) for note in mesh.notes] == ["its picture of 4,096 × 1,024 pixels was reduced to 2,048"]
 
 
+@pytest.mark.nightly
 def test_two_million_triangles_are_simplified(tmp_path: Path) -> None:
     code = f"""
 import numpy as np, resource, trimesh

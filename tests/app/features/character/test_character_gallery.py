@@ -62,6 +62,7 @@ def test_a_click_and_use_draw_the_project_with_ada_and_undo_takes_her_back(galle
     assert drive.document.project.character == before
 
 
+@pytest.mark.nightly
 def test_return_uses_what_is_chosen_and_the_default_body_is_one_of_them(gallery):
     drive, dialog = gallery
     click(dialog, "Ben")
