@@ -12,11 +12,12 @@ from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent,
 from PySide6.QtWidgets import QWidget
 
 from app.features.props.placing import Placing
+from app.features.props.prop_drag import PropDrag
 from app.look.theme import get_theme
 from app.stage.props import PropMeshes, put_prop_down
 from app.stage.session import StageSession
 from app.translation import tr
-from app.widgets.gesture import PointerHand, PressDrag, Reason
+from app.widgets.gesture import PointerHand
 from metagraph.graph.prop import Prop
 
 LEAST = 1.5  # metres from the character that are always in sight
@@ -218,33 +219,15 @@ class FloorPlan(QWidget):
             self.placing.end()
 
 
-class _PropDrag(PressDrag):
-    """What both drags share: the prop as it was, and as it is at a place of the mouse."""
+class _PlanDrag(PropDrag):
+    """Drags a prop on the plan."""
 
     def __init__(self, plan: FloorPlan, ident: str, before: Prop) -> None:
-        super().__init__()
-        self.plan, self.ident, self.before = plan, ident, before
-
-    def words(self) -> str:
-        raise NotImplementedError
-
-    def place(self, at: QPointF, free: bool) -> Prop:
-        raise NotImplementedError
-
-    def update(self, at: QPointF, free: bool = False) -> None:
-        if self.caught(at):
-            self.plan.placing.drag(self.words(), self.ident, self.place(at, free))
-
-    def finish(self, at: QPointF) -> None:
-        if self.begun:
-            self.plan.placing.end()
-
-    def cancel(self, reason: Reason) -> None:
-        if self.begun:
-            self.plan.placing.take_back(self.ident)
+        super().__init__(plan.placing, ident, before)
+        self.plan = plan
 
 
-class MoveDrag(_PropDrag):
+class MoveDrag(_PlanDrag):
     """Moves a prop over the floor."""
 
     def words(self) -> str:
@@ -258,7 +241,7 @@ class MoveDrag(_PropDrag):
         return self.plan.put_down(self.ident, self.before, to)
 
 
-class TurnDrag(_PropDrag):
+class TurnDrag(_PlanDrag):
     """Turns a prop about the vertical, so that its front is towards the mouse."""
 
     def words(self) -> str:

@@ -13,11 +13,12 @@ from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent,
 from PySide6.QtWidgets import QWidget
 
 from app.features.props.placing import Placing
+from app.features.props.prop_drag import PropDrag
 from app.look.theme import get_theme
 from app.stage.over_view import lie_over
 from app.stage.props import PropFigures, PropMeshes, find_prop_on_ray, put_prop_down
 from app.translation import tr
-from app.widgets.gesture import PointerHand, PressDrag, Reason
+from app.widgets.gesture import PointerHand
 from metagraph.graph.prop import LARGEST, Prop
 from metagraph.speech.duet import Stand
 
@@ -258,14 +259,14 @@ def resize(prop: Prop, scale: float) -> Prop:
     return msgspec.structs.replace(prop, scale=round(min(LARGEST, max(SMALLEST, scale)), 4))
 
 
-class _ViewDrag(PressDrag):
-    """What the three drags share: the prop as it was, and as it is at a place of the mouse. high: metres, how
-    high it was taken.
-    """
+class _ViewDrag(PropDrag):
+    """Drags a prop in the view. high: metres, how high it was taken."""
+
+    high = 0.0
 
     def __init__(self, hand: PropHand, ident: str, before: Prop) -> None:
-        super().__init__()
-        self.hand, self.ident, self.before = hand, ident, before
+        super().__init__(hand.placing, ident, before)
+        self.hand = hand
 
     def begin(self, at: QPointF) -> None:
         super().begin(at)
@@ -273,24 +274,6 @@ class _ViewDrag(PressDrag):
         project = self.hand.placing.document.project
         found, far = find_prop_on_ray(project, self.hand.meshes, origin, way)
         self.high = float(origin[1] + far * way[1]) if found == self.ident else self.before.at[1]
-
-    def words(self) -> str:
-        raise NotImplementedError
-
-    def place(self, at: QPointF, free: bool) -> Prop:
-        raise NotImplementedError
-
-    def update(self, at: QPointF, free: bool = False) -> None:
-        if self.caught(at):
-            self.hand.placing.drag(self.words(), self.ident, self.place(at, free))
-
-    def finish(self, at: QPointF) -> None:
-        if self.begun:
-            self.hand.placing.end()
-
-    def cancel(self, reason: Reason) -> None:
-        if self.begun:
-            self.hand.placing.take_back(self.ident)
 
 
 class FloorDrag(_ViewDrag):
