@@ -69,7 +69,7 @@ class ParametersPanel(QWidget):
         self.empty = QLabel(
             tr(
                 "A parameter is a value that a game sets: the mood, where the character looks, a gesture. "
-                "Add one, and try it here. Exports have it with its type."
+                "Add one, and try it here. Games get it with its type."
             ),
             self,
         )

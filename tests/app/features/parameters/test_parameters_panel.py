@@ -199,3 +199,13 @@ def test_one_action_is_found_under_its_stance(toys, panel):
     ((name, parameter),) = panel.document.project.parameters.items()
     action = panel.document.project.action(parameter.request.action)
     assert action.name == entry.text() and action.layer == "arms" and name in panel.controls
+
+
+def test_a_panel_that_is_chosen_in_the_menu_comes_in_front(toys):
+    docks = toys.places.docks
+    for name in ("problems", "parameters"):
+        dock = docks[name]
+        if not dock.isHidden():
+            dock.toggleViewAction().trigger()
+        dock.toggleViewAction().trigger()
+    toys.wait(lambda: not docks["parameters"].visibleRegion().isEmpty())
