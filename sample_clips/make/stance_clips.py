@@ -15,7 +15,7 @@ BASE = Posture(left=SIDE, right=SIDE)
 
 HIP = Hand(
     at=(0.2040, 1.0220, -0.0220),
-    fingers=(-0.365, -0.68, 0.627),
+    fingers=(-0.40, -0.50, 0.77),
     palm=(-0.75, -0.188, -0.635),
     shape="on_hip",
     elbow=(0.9, -0.05, -0.55),
@@ -149,14 +149,14 @@ SEATED_BODY = {
     ),
 }
 LAP = Hand(  # on the thigh of one who sits
-    at=(0.169, 0.984, 0.127),
+    at=(0.169, 0.9895, 0.127),
     fingers=(-0.399, 0.014, 0.917),
     palm=(0.047, -0.998, 0.036),
     shape="on_lap",
     elbow=(0.70, -0.40, -0.60),
 )
 SEATED_ARMS = {
-    "on_lap": replace(BASE, left=LAP, right=LAP.moved(0.003, -0.001, 0.017)),
+    "on_lap": replace(BASE, left=LAP, right=LAP.moved(0.003, 0.002, 0.017)),
     "hands_folded": replace(  # clear of the thighs
         BASE, left=FOLD_UNDER.moved(up=0.025), right=FOLD_OVER.moved(up=0.025), spine=(1.0, 0.0, 0.0)
     ),

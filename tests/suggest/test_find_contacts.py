@@ -34,7 +34,7 @@ def of(clip: str) -> tuple[Action, tuple[ContactSpan, ...]]:
     ("clip", "hand", "to"),
     [
         ("on_hips__stance", "left", "Hips"),
-        ("on_hips__stance", "right", "RightUpperLeg"),  # whose top lies under the same hand
+        ("on_hips__stance", "right", "Hips"),
         ("arms_crossed__stance", "right", "LeftUpperArm"),
         ("hands_clasped__stance", "right", "LeftHand"),
         ("hand_to_chin__stance", "right", "Head"),
