@@ -104,6 +104,7 @@ Weights = dict[str, Array]
 Shapes = dict[str, tuple[int, ...]]
 
 FPS = 25.0  # frames a second of every model
+KNOTS = 16  # of the lengths that a new Flow-VAE is brought to
 ACTIVITY = 4  # self, partner, both, none
 _Count = Annotated[int, Meta(ge=1, le=8192)]
 _Some = Annotated[int, Meta(ge=0, le=256)]
@@ -155,6 +156,8 @@ class FlowSizes(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, t
     """A flow, with or without an autoencoder. pose: numbers a frame. code: what the flow is on. between:
     units of the autoencoder's inner layers. dims: numbers of a code. steps: K. units, layers: of each LSTM.
     span: frames of one step of time. guess: whether the flow is on what a linear guess from past codes lacks.
+    guided: whether it has learned some stretches without hearing them, so that it can be guided. knots: of
+    the lengths that what the guess lacks is brought to (`calibration`); 0 leaves it as it is drawn.
     """
 
     pose: _Count = 78
@@ -167,10 +170,14 @@ class FlowSizes(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, t
     layers: Annotated[int, Meta(ge=1, le=8)] = 1
     span: Annotated[int, Meta(ge=1, le=16)] = 1
     guess: bool = False
+    guided: bool = False
+    knots: _Some = 0
 
     def __post_init__(self) -> None:
         if self.guess and not self.control.past:
             raise ValueError("without past codes there is nothing to guess from")
+        if self.knots and not self.guess:
+            raise ValueError("lengths are those of what a guess lacks: there is no guess")
         if self.code == "none" and self.dims != self.pose * self.span:
             raise ValueError(
                 f"a flow on poses themselves is on {self.pose * self.span} numbers, not on {self.dims}"
@@ -278,7 +285,18 @@ def make_sizes(
         return FlowSizes(pose=pose, control=Control(audio=audio), dims=24, steps=4, units=64)
     far = Control(audio=audio, past=2, ahead=35, dilations=(1, 2, 4, 8, 5))
     dims = min(48, 8 * pose)
-    return FlowSizes(pose=pose, control=far, between=128, dims=dims, steps=4, units=96, span=16, guess=True)
+    return FlowSizes(
+        pose=pose,
+        control=far,
+        between=128,
+        dims=dims,
+        steps=8,
+        units=96,
+        span=16,
+        guess=True,
+        guided=True,
+        knots=KNOTS,
+    )
 
 
 def list_weight_shapes(sizes: Sizes) -> Shapes:
@@ -351,6 +369,8 @@ def _flow(s: FlowSizes) -> Shapes:
         out |= list_linear_shapes("guess", s.control.past * s.dims, s.dims) | {
             "guess.spread": (s.dims, s.dims)
         }
+        if s.knots:
+            out |= {"guess.drawn": (s.knots,), "guess.true": (s.knots,)}
     out |= _control(s.control, s.told)
     half = s.dims // 2
     for k in range(s.steps):
