@@ -165,7 +165,7 @@ def test_what_is_planted_is_found_with_what_is_heard_and_not_without(
 def test_the_flow_makes_use_of_the_past_that_it_is_told(dropped: float) -> None:
     """To a flow that knows the past, codes are less likely after another past, which the guess does not see;
     to one that never learned it (so the test can fail), as likely."""
-    own = learn_toys("flow-vae", toy_sizes("flow-vae", True), 120, past_dropped=dropped)
+    own = learn_toys("flow-vae", toy_sizes("flow-vae", True), 200, past_dropped=dropped)
     objective = own.objective
     assert isinstance(objective, FlowObjective)
     objective.settings = TrainingSettings(batch=256, frames=96, past_dropped=0.0)
@@ -174,7 +174,7 @@ def test_the_flow_makes_use_of_the_past_that_it_is_told(dropped: float) -> None:
         width = own.plan.sizes.control.width  # type: ignore[union-attr]
         strange = torch.cat([batch.context[..., :width].roll(1, 0), batch.context[..., width:]], -1)
         right, wrong = (nats(objective, batch.codes, context) for context in (batch.context, strange))
-    assert (wrong - right > 0.5) == (dropped < 1)
+    assert (wrong - right > 0.25) == (dropped < 1)
 
 
 def nats(objective: FlowObjective, codes: torch.Tensor, context: torch.Tensor) -> float:
