@@ -49,6 +49,13 @@ of guess.spread. So e has mean 0 and covariance 1 before anything is learned, wh
 it, and what is drawn moves as fast and stays as near as the takes do, up to what a linear guess can tell.
 ln p(h) has - sum ln |diag S| more. Without `guess`, e = h.
 
+Where `guided`, some stretches of training have audio 0 (standardised), activity as it is. Guidance w draws
+twice from the same noise, with memories of their own, without audio (e0) and with it (e1), and goes on with
+e0 + w (e1 - e0). With `knots` what is drawn so is made as long as the takes have it: guess.drawn and
+guess.true are lengths of e at the same quantiles, as drawn and of the takes learned from. A length between
+two of them is interpolated, from 0 on; one beyond the last grows as the last does. They are found after
+training (`calibration`), and all 0 before: e stays as it is.
+
 `flow.steps.k`, k = 0 first on the way from e to z (normalising direction):
 
     actnorm   z <- (z + bias) * exp(logs)
@@ -283,7 +290,7 @@ def make_sizes(
         )
     if as_published:
         return FlowSizes(pose=pose, control=Control(audio=audio), dims=24, steps=4, units=64)
-    far = Control(audio=audio, past=2, ahead=35, dilations=(1, 2, 4, 8, 5))
+    far = Control(audio=audio, past=2, before=25, ahead=35, dilations=(1, 2, 4, 8, 15))
     dims = min(48, 8 * pose)
     return FlowSizes(
         pose=pose,

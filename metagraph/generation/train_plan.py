@@ -106,6 +106,8 @@ def choose_settings(loss: Loss | None, kind: Kind = "matching") -> TrainingSetti
             known=0.9,
             past_dropped=0.3,
             sound_dropped=0.15,
+            head=1.0,
+            voices=0.3,
         )
     return TrainingSettings(loss=loss)
 
