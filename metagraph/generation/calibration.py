@@ -30,7 +30,7 @@ MOST = 8  # takes, evenly spread, that are enough
 SEED = 1000  # of the first round
 
 
-def calibrate_lengths(model: Model, takes: Sequence[Take], rounds: int = ROUNDS) -> Model:
+def fit_lengths(model: Model, takes: Sequence[Take], rounds: int = ROUNDS) -> Model:
     """Return a model whose longer lengths are brought to those of the takes that it has learned from; the
     same one if it has none.
     """

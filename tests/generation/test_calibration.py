@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from metagraph.generation import calibration
-from metagraph.generation.calibration import calibrate_lengths, measure_drawn_lengths, measure_true_lengths
+from metagraph.generation.calibration import fit_lengths, measure_drawn_lengths, measure_true_lengths
 from metagraph.generation.networks import KNOTS, Control, FlowSizes
 from metagraph.generation.stored import Model
 from metagraph.generation.takes import Take, TakeSource
@@ -82,7 +82,7 @@ def test_longer_lengths_become_those_of_the_takes_learned_from() -> None:
     model = own_model()
     take = make_lively_take(model, 0.8)
     before = measure_drawn_lengths(model, take, 7)
-    found = calibrate_lengths(model, [take])
+    found = fit_lengths(model, [take])
     true = measure_true_lengths(model, take)
     used = Lengths(found.weights["guess.drawn"], found.weights["guess.true"])
     drawn = measure_drawn_lengths(found, take, 7)
@@ -99,9 +99,7 @@ def test_longer_lengths_become_those_of_the_takes_learned_from() -> None:
 def test_takes_that_are_too_short_or_a_model_without_knots_leave_it_as_it_is() -> None:
     model = own_model()
     short = make_lively_take(model, 0.3).part(0, 12)
-    assert not Lengths(
-        *(calibrate_lengths(model, [short]).weights[f"guess.{n}"] for n in ("drawn", "true"))
-    ).used
+    assert not Lengths(*(fit_lengths(model, [short]).weights[f"guess.{n}"] for n in ("drawn", "true"))).used
     assert len(calibration.LEVELS) == KNOTS
     plain = untrained("moglow", 0.02, tiny("moglow"))
-    assert calibrate_lengths(plain, [short]) is plain
+    assert fit_lengths(plain, [short]) is plain

@@ -23,7 +23,7 @@ def mask_features(features: Tensor, last: Tensor) -> Tensor:
     return features * known[:, :, None]
 
 
-def silence_features(features: Tensor, deaf: Tensor) -> Tensor:
+def mask_sound(features: Tensor, deaf: Tensor) -> Tensor:
     """Return frames `[N, T, inputs]` with audio at 0 for those who see who speaks and hear nothing. deaf:
     `[N]`.
     """

@@ -20,7 +20,7 @@ from metagraph.generation.poses import NUMBERS
 from metagraph.generation.train_plan import Loss, TrainingSettings
 from metagraph.generation.training.autoencoder import set_components, train_autoencoder
 from metagraph.generation.training.data import TrainingCorpus, take_stretches
-from metagraph.generation.training.flow_net import CvaeNet, FlowNet, silence_features
+from metagraph.generation.training.flow_net import CvaeNet, FlowNet, mask_sound
 from metagraph.generation.training.matching_net import MatchingNet
 from metagraph.generation.training.nets import Net, load, read_net_weights
 
@@ -203,7 +203,7 @@ class FlowObjective(Objective):
         starts, poses, features, ahead = self.crops(corpus, control, chance)
         if sizes.guided:
             deaf = torch.rand(count, generator=chance) < settings.sound_dropped
-            features = silence_features(features, deaf)
+            features = mask_sound(features, deaf)
         heard = self.net.heard(features, ahead, span)
         poses = poses.reshape(count, -1, span * sizes.pose)
         if sizes.guess:

@@ -12,7 +12,7 @@ from metagraph.generation.training.flow_net import (
     NetConvolutions,
     append_lookahead,
     mask_features,
-    silence_features,
+    mask_sound,
 )
 
 
@@ -79,7 +79,7 @@ class MatchingNet(nn.Module):
         hears nothing.
         """
         sizes = self.sizes
-        known = mask_features(silence_features(features, deaf), sizes.past * sizes.frames + lookahead)
+        known = mask_features(mask_sound(features, deaf), sizes.past * sizes.frames + lookahead)
         return self.control(append_lookahead(known, lookahead / sizes.most))
 
     def heard(self, frames: Tensor, deaf: Tensor) -> Tensor:

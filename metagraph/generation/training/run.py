@@ -12,7 +12,7 @@ import msgspec
 import torch
 
 from metagraph.errors import FileError
-from metagraph.generation.calibration import calibrate_lengths
+from metagraph.generation.calibration import fit_lengths
 from metagraph.generation.networks import count_parameters
 from metagraph.generation.standing import CheckpointNote, measure_training_share
 from metagraph.generation.train_plan import STOP, TrainingPlan, read_planned_takes, read_training_plan
@@ -148,7 +148,7 @@ class Run:
         """Write the model's file of what was learned so far."""
         self.tell(self._told("finish", stopped=stopped))
         notes = ("stopped before its time was over",) if stopped else ()
-        model = calibrate_lengths(make_model_so_far(self.learner, notes=notes), self.takes)
+        model = fit_lengths(make_model_so_far(self.learner, notes=notes), self.takes)
         found: dict[str, float] = {}
         if self.held:
             found, _ = judge_held_out(model, self.held, SHORT if stopped else LONGEST)

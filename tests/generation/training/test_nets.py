@@ -24,7 +24,7 @@ from metagraph.generation.noise import draw_noise  # noqa: E402
 from metagraph.generation.poses import FURTHEST  # noqa: E402
 from metagraph.generation.sampler import generate_recording_poses  # noqa: E402
 from metagraph.generation.stored import Model  # noqa: E402
-from metagraph.generation.training.flow_net import CvaeNet, FlowNet, silence_features  # noqa: E402
+from metagraph.generation.training.flow_net import CvaeNet, FlowNet, mask_sound  # noqa: E402
 from metagraph.generation.training.matching_net import MatchingNet  # noqa: E402
 from metagraph.generation.training.nets import make_net, read_net_weights  # noqa: E402
 from tests.generation.makers import shaken, tiny, untrained  # noqa: E402
@@ -57,7 +57,7 @@ def _frames(net: FlowNet | CvaeNet, model: Model, told: Any, seed: int, lookahea
     features = torch.from_numpy(model.heard(with_edges(told, control.before, control.ahead)))[None]
     ahead = None if lookahead is None else torch.tensor([lookahead])
     heard = net.heard(features, ahead)
-    deaf = net.heard(silence_features(features, torch.tensor([True])), ahead)
+    deaf = net.heard(mask_sound(features, torch.tensor([True])), ahead)
     span = sizes.span if isinstance(sizes, FlowSizes) else 1
     past = torch.zeros(1, 1, max(1, control.past), sizes.pose)
     guessed = isinstance(net, FlowNet) and net.sizes.guess
