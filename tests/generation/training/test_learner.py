@@ -177,7 +177,7 @@ def test_the_flow_makes_use_of_the_past_that_it_is_told(dropped: float) -> None:
     assert (wrong - right > 0.25) == (dropped < 1)
 
 
-def nats(objective: FlowObjective, codes: torch.Tensor, context: torch.Tensor) -> float:
+def nats(objective: FlowObjective, codes: Any, context: Any) -> float:
     """How unlikely codes are, the mean of all moments, up to a constant."""
     z, logs = objective.net.flow(codes, context)
     return float((0.5 * (z * z).sum(-1) - logs).mean())
