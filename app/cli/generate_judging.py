@@ -50,7 +50,9 @@ def add_manner_arguments(parser: ArgumentParser) -> None:
         help="frames of sound the model hears ahead; 0 for live use (default: as many as the model uses)",
     )
     parser.add_argument(
-        "--guidance", type=float, help="how closely a matching model follows the speech (default: 1.5)"
+        "--guidance",
+        type=float,
+        help="how closely a matching model or a flow-vae follows the speech (default: 1.5)",
     )
     parser.add_argument(
         "--draws", type=int, default=200, help="bootstrap draws for the intervals (default: 200)"

@@ -57,7 +57,9 @@ def add_heard_arguments(parser: ArgumentParser, needed: bool) -> None:
     parser.add_argument(
         "--temperature", type=float, default=1.0, help="how much the motion varies, 0 to 1.2 (default: 1)"
     )
-    parser.add_argument("--guidance", type=float, help="how closely a matching model follows the speech")
+    parser.add_argument(
+        "--guidance", type=float, help="how closely a matching model or a flow-vae follows the speech"
+    )
     parser.add_argument(
         "--lookahead",
         type=int,

@@ -15,7 +15,15 @@ from numpy.typing import NDArray
 from metagraph.generation import chunks, cvae, vae
 from metagraph.generation.encoder import BLOCK, ChunkHearing, EncoderHearing
 from metagraph.generation.flow import FlowDrawing
-from metagraph.generation.networks import Control, CvaeSizes, FlowSizes, MatchingSizes, Sizes, Weights
+from metagraph.generation.networks import (
+    ACTIVITY,
+    Control,
+    CvaeSizes,
+    FlowSizes,
+    MatchingSizes,
+    Sizes,
+    Weights,
+)
 from metagraph.generation.noise import Noise, draw_noise
 from metagraph.generation.poses import FURTHEST
 from metagraph.generation.prepared import Dense
@@ -61,18 +69,31 @@ class Generator(ABC):
 
 class FlowGenerator(Generator):
     """The Flow-VAE, and MoGlow. lookahead: frames ahead that are known, 0..ahead, at least those of the
-    piece that is made. first: the pose `[X]` before, standardised.
+    piece that is made. first: the pose `[X]` before, standardised. guidance: as `chunks.GUIDANCE`, of a
+    model that has learned to be guided.
     """
 
     def __init__(
-        self, w: Weights, sizes: FlowSizes, first: Array, temperature: float, lookahead: int | None
+        self,
+        w: Weights,
+        sizes: FlowSizes,
+        first: Array,
+        temperature: float,
+        lookahead: int | None,
+        guidance: float = 1.0,
     ) -> None:
         control = sizes.control
         self._hears(control, None if lookahead is None else max(lookahead, sizes.span - 1))
         self.made, self.temperature = sizes.span, np.float32(temperature)
         self.flow, self.decoder, self.noise = FlowDrawing(w, sizes), vae.Decoder(w, sizes), Noise(sizes.dims)
         self.hearing = EncoderHearing(w, control, self.needed, self.flow)
+        self.guidance = np.float32(guidance if sizes.guided else 1.0)
+        self.deaf: FlowDrawing | None = None  # the same flow without sound, with memory of its own
+        if self.guidance != 1:
+            self.deaf = FlowDrawing(w, sizes)
+            self.without = EncoderHearing(w, control, self.needed, self.deaf)
         self.guess = vae.Guess(w) if sizes.guess else None
+        self.length = 0.0  # of what the guess lacked of the last code, as it was drawn
         held = first[None].astype(np.float32)
         if sizes.guess:
             held = vae.encode_spans(w, sizes, np.tile(held, sizes.span)).astype(np.float32)
@@ -89,16 +110,27 @@ class FlowGenerator(Generator):
         z = self.noise.of(seed, take, frame) * self.temperature
         with np.errstate(over="ignore", invalid="ignore"):
             code = self.flow.draw(z, past, told)
+            if self.deaf is not None:
+                code = self._guided(code, self.deaf.draw(z, past, self.without.of(frame, _unheard(heard))))
             if not isfinite(code @ code):  # a flow that ran away begins again
                 code[:] = 0
                 self.flow.reset()
+                if self.deaf is not None:
+                    self.deaf.reset()
         if self.guess is not None:
-            code = _near(self.guess.one(before, code))
+            self.length = float(np.sqrt(code @ code))
+            code = _near(
+                self.guess.one(before, code * np.float32(self.guess.lengths.find_share(self.length)))
+            )
             self.past = np.concatenate([self.past, code[None]])[-len(self.past) :]
         poses = _near(self.decoder.one(code)).reshape(self.made, -1)
         if self.guess is None and len(self.past):
             self.past = np.concatenate([self.past, poses])[-len(self.past) :]
         return poses
+
+    def _guided(self, code: Array, without: Array) -> Array:
+        """Return a code further from what the same noise gives without sound."""
+        return np.asarray(without + self.guidance * (code - without), np.float32)
 
 
 class CvaeGenerator(Generator):
@@ -175,6 +207,13 @@ class MatchingGenerator(Generator):
         return _near(self._joining.rest()) if self.delay else None
 
 
+def _unheard(heard: Array) -> Array:
+    """Return features `[n, audio + 4]` of which only who speaks is left."""
+    out = np.zeros_like(heard)
+    out[:, -ACTIVITY:] = heard[:, -ACTIVITY:]
+    return out
+
+
 def _near(poses: Array) -> Array:
     """Return poses of which no number is further than FURTHEST."""
     return np.asarray(np.minimum(np.maximum(poses, -FURTHEST), FURTHEST))
@@ -192,7 +231,7 @@ def make_generator(
     frames ahead that are known, None for all it can use.
     """
     if isinstance(sizes, FlowSizes):
-        return FlowGenerator(w, sizes, first, temperature, lookahead)
+        return FlowGenerator(w, sizes, first, temperature, lookahead, guidance)
     if isinstance(sizes, CvaeSizes):
         return CvaeGenerator(w, sizes, temperature, lookahead)
     return MatchingGenerator(w, sizes, first, temperature, lookahead, guidance)

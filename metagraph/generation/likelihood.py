@@ -65,10 +65,12 @@ def find_noise(
     standard = model.poses.apply(poses)
     codes = vae.encode_spans(model.weights, sizes, vae.list_spans(standard, sizes.span))
     context, before = _contexts(model, sizes, standard, features, lookahead)
-    spread = 0.0
+    spread: Any = 0.0
     if sizes.guess:
         guess = vae.Guess(model.weights)
-        codes, spread = guess.find_lacked(codes, before.reshape(len(before), -1)), guess.log_spread
+        lacked = guess.find_lacked(codes, before.reshape(len(before), -1))
+        codes, further = guess.lengths.undo(lacked)
+        spread = guess.log_spread - further
     z, logs, _ = FlowWeights(model.weights, sizes).forward(codes, context)
     logs = logs - spread
     return z, np.asarray(logs - 0.5 * (z * z + np.log(2 * np.pi)).sum(-1))

@@ -49,6 +49,13 @@ of guess.spread. So e has mean 0 and covariance 1 before anything is learned, wh
 it, and what is drawn moves as fast and stays as near as the takes do, up to what a linear guess can tell.
 ln p(h) has - sum ln |diag S| more. Without `guess`, e = h.
 
+Where `guided`, some stretches of training have audio 0 (standardised), activity as it is. Guidance w draws
+twice from the same noise, with memories of their own, without audio (e0) and with it (e1), and goes on with
+e0 + w (e1 - e0). With `knots` what is drawn so is made as long as the takes have it: guess.drawn and
+guess.true are lengths of e at the same quantiles, as drawn and of the takes learned from. A length between
+two of them is interpolated, from 0 on; one beyond the last grows as the last does. They are found after
+training (`calibration`), and all 0 before: e stays as it is.
+
 `flow.steps.k`, k = 0 first on the way from e to z (normalising direction):
 
     actnorm   z <- (z + bias) * exp(logs)
@@ -104,6 +111,7 @@ Weights = dict[str, Array]
 Shapes = dict[str, tuple[int, ...]]
 
 FPS = 25.0  # frames a second of every model
+KNOTS = 16  # of the lengths that a new Flow-VAE is brought to
 ACTIVITY = 4  # self, partner, both, none
 _Count = Annotated[int, Meta(ge=1, le=8192)]
 _Some = Annotated[int, Meta(ge=0, le=256)]
@@ -155,6 +163,8 @@ class FlowSizes(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, t
     """A flow, with or without an autoencoder. pose: numbers a frame. code: what the flow is on. between:
     units of the autoencoder's inner layers. dims: numbers of a code. steps: K. units, layers: of each LSTM.
     span: frames of one step of time. guess: whether the flow is on what a linear guess from past codes lacks.
+    guided: whether it has learned some stretches without hearing them, so that it can be guided. knots: of
+    the lengths that what the guess lacks is brought to (`calibration`); 0 leaves it as it is drawn.
     """
 
     pose: _Count = 78
@@ -167,10 +177,14 @@ class FlowSizes(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, t
     layers: Annotated[int, Meta(ge=1, le=8)] = 1
     span: Annotated[int, Meta(ge=1, le=16)] = 1
     guess: bool = False
+    guided: bool = False
+    knots: _Some = 0
 
     def __post_init__(self) -> None:
         if self.guess and not self.control.past:
             raise ValueError("without past codes there is nothing to guess from")
+        if self.knots and not self.guess:
+            raise ValueError("lengths are those of what a guess lacks: there is no guess")
         if self.code == "none" and self.dims != self.pose * self.span:
             raise ValueError(
                 f"a flow on poses themselves is on {self.pose * self.span} numbers, not on {self.dims}"
@@ -276,9 +290,20 @@ def make_sizes(
         )
     if as_published:
         return FlowSizes(pose=pose, control=Control(audio=audio), dims=24, steps=4, units=64)
-    far = Control(audio=audio, past=2, ahead=35, dilations=(1, 2, 4, 8, 5))
+    far = Control(audio=audio, past=2, before=25, ahead=35, dilations=(1, 2, 4, 8, 15))
     dims = min(48, 8 * pose)
-    return FlowSizes(pose=pose, control=far, between=128, dims=dims, steps=4, units=96, span=16, guess=True)
+    return FlowSizes(
+        pose=pose,
+        control=far,
+        between=128,
+        dims=dims,
+        steps=8,
+        units=96,
+        span=16,
+        guess=True,
+        guided=True,
+        knots=KNOTS,
+    )
 
 
 def list_weight_shapes(sizes: Sizes) -> Shapes:
@@ -351,6 +376,8 @@ def _flow(s: FlowSizes) -> Shapes:
         out |= list_linear_shapes("guess", s.control.past * s.dims, s.dims) | {
             "guess.spread": (s.dims, s.dims)
         }
+        if s.knots:
+            out |= {"guess.drawn": (s.knots,), "guess.true": (s.knots,)}
     out |= _control(s.control, s.told)
     half = s.dims // 2
     for k in range(s.steps):

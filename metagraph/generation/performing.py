@@ -43,8 +43,9 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class Chance:
-    """How a take is drawn. seed: 0..2^64 - 1. temperature: 0..1.2. guidance: how closely a matching model
-    follows the speech. take: number of the take, so that the same speech is moved to differently.
+    """How a take is drawn. seed: 0..2^64 - 1. temperature: 0..1.2. guidance: how closely a model that
+    can be guided follows the speech. take: number of the take, so that the same speech is moved to
+    differently.
     """
 
     seed: int = 1

@@ -41,10 +41,11 @@ class TakeSampler:
 
     seed, take: 0..2^64 - 1; start: number of the first frame, 0 or more, so that what begins later has the
     chance of its own frames. temperature: 0..WARMEST, how much may happen by chance. lookahead: frames of
-    sound ahead that each frame may wait for; None: all that the model uses. guidance: how closely a matching
-    model follows the speech. channels, gains: of the sound, as `features.AudioStream`. first: local
-    rotations `[J, 4]` of all joints that it goes on from, None for the mean pose. smooth: frames, the
-    deviation of a Gaussian over the numbers of poses; None: as `averaging` has it for matching, 0 for others.
+    sound ahead that each frame may wait for; None: all that the model uses. guidance: how closely a model
+    that can be guided follows the speech. channels, gains: of the sound, as `features.AudioStream`. first:
+    local rotations `[J, 4]` of all joints that it goes on from, None for the mean pose. smooth: frames, the
+    deviation of a Gaussian over the numbers of poses; None: as `averaging` has it where a model makes pieces
+    of several frames, 0 for others.
     delay: frames by which poses come out later than the sound goes in. made, pieces: `advance` makes so many
     frames at once, after it was called so often.
     """

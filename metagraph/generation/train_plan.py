@@ -41,8 +41,9 @@ class TrainingSettings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     None: what suits the sizes. batch: crops a step; frames: of a crop. rate, least, warm: of Noam's decay:
     the largest and smallest rate, steps to the largest. calm: the last share of a training, in which the rate
     goes down. clip: norm of the gradient, 0 for any. past_dropped: share of past frames (of pasts, for
-    tokens) not told, while a guess knows its codes; past_noise: deviation of noise on past codes and tokens;
-    sound_dropped: share of chunks that see who speaks and hear nothing. alpha: weight of the likelihood, in
+    tokens and codes) not told, while a guess knows them; past_noise: deviation of noise on past codes and
+    tokens; sound_dropped: share of chunks (of crops, for a flow that can be guided) that see who speaks and
+    hear nothing. alpha: weight of the likelihood, in
     bits; third: of the paper's third term; noise: deviation on a finished code of poses. tuned: steps of an
     autoencoder before it is finished. head: weight of the head that predicts speeds. known: share of
     stretches that know all ahead. kept: of the running mean of weights, a step; 0 for the weights themselves.
@@ -96,7 +97,18 @@ def choose_settings(loss: Loss | None, kind: Kind = "matching") -> TrainingSetti
             turns=0.0,
         )
     if kind == "flow-vae":
-        return TrainingSettings(loss=loss, batch=32, frames=256, rate=2e-3, warm=800, known=0.9)
+        return TrainingSettings(
+            loss=loss,
+            batch=32,
+            frames=256,
+            rate=2e-3,
+            warm=800,
+            known=0.9,
+            past_dropped=0.3,
+            sound_dropped=0.15,
+            head=1.0,
+            voices=0.3,
+        )
     return TrainingSettings(loss=loss)
 
 

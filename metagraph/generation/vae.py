@@ -57,6 +57,42 @@ class Decoder:
         return code
 
 
+class Lengths:
+    """How long what a guess lacks is as a flow draws it, and in takes (`calibration`). A length between two
+    knots is brought to between theirs, one beyond all is made longer as the last one is.
+    """
+
+    def __init__(self, drawn: Array, true: Array) -> None:
+        self.used = bool(len(drawn)) and float(drawn[0]) > 0  # else nothing is known yet
+        zero = np.zeros(1)
+        self._drawn, self._true = (np.concatenate([zero, x]).astype(np.float64) for x in (drawn, true))
+
+    def find_share(self, length: float) -> float:
+        """Return what numbers that are so long as drawn are multiplied by."""
+        if not self.used or length <= 0:
+            return 1.0
+        if length >= self._drawn[-1]:
+            return float(self._true[-1] / self._drawn[-1])
+        return float(np.interp(length, self._drawn, self._true) / length)
+
+    def undo(self, lacked: Array) -> tuple[Array, Array]:
+        """Return what a flow would have drawn `[..., D]` for numbers as takes have them, and the natural
+        logarithm of the determinant of the way back `[...]`.
+        """
+        if not self.used:
+            return lacked, np.zeros(lacked.shape[:-1], lacked.dtype)
+        long = np.linalg.norm(lacked.astype(np.float64), axis=-1)
+        n = np.clip(np.searchsorted(self._true, long, side="right"), 1, len(self._true) - 1)
+        steep = (self._drawn[n] - self._drawn[n - 1]) / (self._true[n] - self._true[n - 1])
+        beyond = long >= self._true[-1]
+        last = self._drawn[-1] / self._true[-1]
+        drawn = np.where(beyond, long * last, self._drawn[n - 1] + (long - self._true[n - 1]) * steep)
+        steep = np.where(beyond, last, steep)
+        share = drawn / np.maximum(long, 1e-12)
+        logs = (lacked.shape[-1] - 1) * np.log(np.maximum(share, 1e-12)) + np.log(steep)
+        return np.asarray(lacked * share[..., None], lacked.dtype), np.asarray(logs, lacked.dtype)
+
+
 class Guess:
     """What comes next by a linear guess from past codes, and what it lacks."""
 
@@ -66,6 +102,8 @@ class Guess:
         self._lacked = Dense(spread.T, np.zeros(len(spread)), dtype)
         self._weight, self._bias = w["guess.weight"].T, w["guess.bias"]
         self._inverse = np.linalg.inv(spread).T.astype(dtype)
+        none = np.zeros(0)
+        self.lengths = Lengths(w.get("guess.drawn", none), w.get("guess.true", none))
         self.log_spread = float(np.log(np.abs(np.diag(spread))).sum())
 
     def one(self, past: Array, lacked: Array) -> Array:

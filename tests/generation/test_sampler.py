@@ -157,6 +157,26 @@ def test_closer_to_the_speech_is_another_motion():
     assert np.abs(plain.rotations - close.rotations).max() > 1e-5
 
 
+@pytest.mark.parametrize("guided", [True, False])
+def test_a_flow_is_guided_if_it_has_learned_to_be(guided):
+    sizes = FlowSizes(
+        control=Control(width=8, past=2),
+        between=16,
+        dims=7,
+        steps=3,
+        units=6,
+        span=4,
+        guess=True,
+        guided=guided,
+    )
+    model = untrained("flow-vae", 0.05, sizes)
+    none, plain, close = (sample_whole(model, SOUND, TOLD, guidance=w).rotations for w in (0.0, 1.0, 3.0))
+    assert (np.abs(plain - close).max() > 1e-5) == guided
+    # Without any, nothing that is said matters: only who speaks does.
+    other = sample_whole(model, 0 * SOUND, TOLD, guidance=0.0).rotations
+    assert (np.abs(none - other).max() < 1e-6) == guided
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_weights_that_run_away_give_rotations_all_the_same(kind):
     wild = untrained(kind, by=3.0)

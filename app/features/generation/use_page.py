@@ -104,7 +104,7 @@ class UsePage(GenerationPage):
         self.guidance = DoubleSpinBox(self, minimum=0, maximum=5, singleStep=0.25, decimals=2, value=GUIDANCE)
         self.guidance.setAccessibleName(tr("Follow speech"))
         self.guidance.setToolTip(
-            tr("How closely the motion follows the speech; 1 is as in the takes. Only for matching models.")
+            tr("How closely the motion follows the speech; 1 is as in the takes. Not for all models.")
         )
         return self.row(
             (tr("Model"), self.model),

@@ -7,7 +7,7 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 from metagraph.generation.flow import LEAST
-from metagraph.generation.networks import Control, CvaeSizes, FlowSizes
+from metagraph.generation.networks import ACTIVITY, Control, CvaeSizes, FlowSizes
 
 States = list[tuple[Tensor, Tensor]]
 
@@ -21,6 +21,14 @@ def mask_features(features: Tensor, last: Tensor) -> Tensor:
     """Return frames `[N, T, inputs]` with those after number `last [N]` at 0."""
     known = torch.arange(features.shape[1])[None] <= last[:, None]
     return features * known[:, :, None]
+
+
+def mask_sound(features: Tensor, deaf: Tensor) -> Tensor:
+    """Return frames `[N, T, inputs]` with audio at 0 for those who see who speaks and hear nothing. deaf:
+    `[N]`.
+    """
+    audio = features[..., :-ACTIVITY] * ~deaf[:, None, None]
+    return torch.cat([audio, features[..., -ACTIVITY:]], -1)
 
 
 class NetConvolutions(nn.Module):
@@ -198,11 +206,14 @@ class GuessNet(nn.Module):
     bias: Tensor
     spread: Tensor
 
-    def __init__(self, dims: int, past: int) -> None:
+    def __init__(self, dims: int, past: int, knots: int = 0) -> None:
         super().__init__()
         self.register_buffer("weight", torch.zeros(dims, past * dims))
         self.register_buffer("bias", torch.zeros(dims))
         self.register_buffer("spread", torch.eye(dims))
+        if knots:  # of lengths, once it has learned: 0 until then
+            self.register_buffer("drawn", torch.zeros(knots))
+            self.register_buffer("true", torch.zeros(knots))
 
     def find_lacked(self, codes: Tensor, past: Tensor) -> Tensor:
         """Return what the guess lacks `[..., D]`. past: `[..., past, D]`."""
@@ -233,7 +244,7 @@ class FlowNet(ControlNet):
         if sizes.code != "none":
             self.code = Code(sizes.dims, whole if sizes.code == "pca" else None)
         if sizes.guess:
-            self.guess = GuessNet(sizes.dims, sizes.control.past)
+            self.guess = GuessNet(sizes.dims, sizes.control.past, sizes.knots)
         self.hears(sizes.control, sizes.told)
         self.flow = FlowSteps(sizes)
 

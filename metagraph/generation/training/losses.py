@@ -20,7 +20,7 @@ from metagraph.generation.poses import NUMBERS
 from metagraph.generation.train_plan import Loss, TrainingSettings
 from metagraph.generation.training.autoencoder import set_components, train_autoencoder
 from metagraph.generation.training.data import TrainingCorpus, take_stretches
-from metagraph.generation.training.flow_net import CvaeNet, FlowNet
+from metagraph.generation.training.flow_net import CvaeNet, FlowNet, mask_sound
 from metagraph.generation.training.matching_net import MatchingNet
 from metagraph.generation.training.nets import Net, load, read_net_weights
 
@@ -201,6 +201,9 @@ class FlowObjective(Objective):
         sizes, settings = self.sizes, self.settings
         control, span, count = sizes.control, sizes.span, settings.batch
         starts, poses, features, ahead = self.crops(corpus, control, chance)
+        if sizes.guided:
+            deaf = torch.rand(count, generator=chance) < settings.sound_dropped
+            features = mask_sound(features, deaf)
         heard = self.net.heard(features, ahead, span)
         poses = poses.reshape(count, -1, span * sizes.pose)
         if sizes.guess:
@@ -210,6 +213,8 @@ class FlowObjective(Objective):
             every = every + settings.past_noise * torch.randn(every.shape, generator=chance)
             past = every.unfold(1, control.past, 1).transpose(2, 3)[:, :-1]
             codes = self.net.guess.find_lacked(codes, past)
+            known = torch.rand((*past.shape[:2], 1, 1), generator=chance) >= settings.past_dropped
+            past = past * known  # the guess knows them all the same
         else:
             codes = self._standard(self.net.draw_code(poses, chance))
             if self.what == "finished":

@@ -7,7 +7,13 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 from metagraph.generation.networks import ACTIVITY, MatchingSizes
-from metagraph.generation.training.flow_net import Code, NetConvolutions, append_lookahead, mask_features
+from metagraph.generation.training.flow_net import (
+    Code,
+    NetConvolutions,
+    append_lookahead,
+    mask_features,
+    mask_sound,
+)
 
 
 class HearingNet(NetConvolutions):
@@ -73,9 +79,7 @@ class MatchingNet(nn.Module):
         hears nothing.
         """
         sizes = self.sizes
-        audio = features[..., : sizes.audio] * ~deaf[:, None, None]
-        features = torch.cat([audio, features[..., sizes.audio :]], -1)
-        known = mask_features(features, sizes.past * sizes.frames + lookahead)
+        known = mask_features(mask_sound(features, deaf), sizes.past * sizes.frames + lookahead)
         return self.control(append_lookahead(known, lookahead / sizes.most))
 
     def heard(self, frames: Tensor, deaf: Tensor) -> Tensor:

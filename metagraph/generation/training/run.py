@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import torch
 
 from metagraph.errors import FileError
+from metagraph.generation.calibration import fit_lengths
 from metagraph.generation.networks import count_parameters
 from metagraph.generation.standing import CheckpointNote, measure_training_share
 from metagraph.generation.train_plan import STOP, TrainingPlan, read_planned_takes, read_training_plan
@@ -41,8 +44,8 @@ class Run:
         self.plan: TrainingPlan = read_training_plan(folder)
         if self.plan.threads:
             torch.set_num_threads(self.plan.threads)
-        takes, self.held = read_planned_takes(folder, self.plan)
-        self.learner = Learner(self.plan, takes)
+        self.takes, self.held = read_planned_takes(folder, self.plan)
+        self.learner = Learner(self.plan, self.takes)
         self.seconds = self.minutes = 0.0
         self.numbers: dict[str, float] = {}
         point, notes = read_checkpoint(folder, self.plan.fingerprint()) if resume else (None, [])
@@ -145,11 +148,11 @@ class Run:
         """Write the model's file of what was learned so far."""
         self.tell(self._told("finish", stopped=stopped))
         notes = ("stopped before its time was over",) if stopped else ()
-        model = make_model_so_far(self.learner, notes=notes)
+        model = fit_lengths(make_model_so_far(self.learner, notes=notes), self.takes)
         found: dict[str, float] = {}
         if self.held:
             found, _ = judge_held_out(model, self.held, SHORT if stopped else LONGEST)
         out = Path(self.plan.out)
-        export_model(make_model_so_far(self.learner, found, notes), out)
+        export_model(replace(model, card=msgspec.structs.replace(model.card, statistics=found)), out)
         self.tell(self._told("end", path=str(out), statistics=found, stopped=stopped))
         return out

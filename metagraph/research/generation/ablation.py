@@ -111,6 +111,7 @@ CHANGES = (
     AblationChange("any moment", "moments of a flow as likely late as early", {"early": 0.0, "spread": 1.0}),
     AblationChange("apart", "pieces are told by their own tokens alone, and do not meet"),
     AblationChange("no guidance", "follows the speech as it has learned to, no more", guidance=1.0),
+    AblationChange("no lengths", "how far it moves is not brought to what the takes do"),
     AblationChange("mirrored", "mirror twins are learned from as well", mirrored=True),
 )
 NAMES = tuple(c.name for c in CHANGES)
@@ -119,24 +120,27 @@ NAMES = tuple(c.name for c in CHANGES)
 def choose_sizes(change: AblationChange, kind: Kind, sizes: Sizes) -> tuple[Kind, Sizes] | None:
     """Return what is trained, None if the change says nothing about such a model."""
     name = change.name
+    if name == "no guidance" and isinstance(sizes, FlowSizes):
+        return (kind, sizes) if sizes.guided else None
     if name in ("no guidance", "any moment", "apart"):
         return _of_matching(name, kind, sizes)
-    if name in ("paper's loss", "no third term", "no guess", "frame by frame", "not tuned"):
+    if name in ("paper's loss", "no third term", "no guess", "frame by frame", "not tuned", "no lengths"):
         return _of_flow_vae(name, kind, sizes)
     if name == "one step":
         return (kind, changed(sizes, steps=1)) if isinstance(sizes, FlowSizes) else None
     if name == "no vae":
         if not isinstance(sizes, FlowSizes) or sizes.code == "none":
             return None
-        alone = {"code": "none", "dims": sizes.pose, "span": 1, "guess": False}
+        alone = {"code": "none", "dims": sizes.pose, "span": 1, "guess": False, "knots": 0}
         return "moglow", changed(sizes, **alone)
     if name == "no past":
         if isinstance(sizes, MatchingSizes):  # its tokens go on from each other; nothing else joins them
             return None
-        return None if isinstance(sizes, CvaeSizes) else (kind, _control(changed(sizes, guess=False), past=0))
+        if isinstance(sizes, CvaeSizes):
+            return None
+        return kind, _control(changed(sizes, guess=False, knots=0), past=0)
     if name == "past told":
-        knows = isinstance(sizes, CvaeSizes) or (isinstance(sizes, FlowSizes) and sizes.guess)
-        return None if knows else (kind, sizes)
+        return None if isinstance(sizes, CvaeSizes) else (kind, sizes)
     if name == "no ahead":
         if isinstance(sizes, MatchingSizes):  # a chunk hears itself
             return None
@@ -161,7 +165,9 @@ def _of_flow_vae(name: str, kind: Kind, sizes: Sizes) -> tuple[Kind, Sizes] | No
         return (kind, sizes) if name == "not tuned" else None
     if name == "frame by frame":
         return kind, changed(sizes, span=1)
-    return kind, changed(sizes, guess=False) if name == "no guess" else sizes
+    if name == "no lengths":
+        return (kind, changed(sizes, knots=0)) if sizes.knots else None
+    return kind, changed(sizes, guess=False, knots=0) if name == "no guess" else sizes
 
 
 def _control(sizes: FlowSizes | CvaeSizes, **new: int) -> FlowSizes | CvaeSizes:

@@ -87,7 +87,22 @@ def toy(frames: int, seed: int) -> Take:
     return Take(TakeSource(f"toy {seed}"), poses.astype(np.float32), told, TakeMarks(tuple(peaks)))
 
 
-def toy_sizes(kind: Kind) -> Sizes:
+GUESSED = FlowSizes(  # as the Flow-VAE is, but small
+    pose=18,
+    control=Control(width=16, past=2),
+    between=40,
+    dims=8,
+    steps=4,
+    units=32,
+    span=4,
+    guess=True,
+    guided=True,
+)
+
+
+def toy_sizes(kind: Kind, guess: bool = False) -> Sizes:
+    if guess:
+        return GUESSED
     if kind == "matching":
         return MatchingSizes(
             pose=18,

@@ -12,10 +12,11 @@ torch = pytest.importorskip("torch", reason="training needs torch, which is not 
 from metagraph.generation import averaging, generators, vae  # noqa: E402
 from metagraph.generation.features import with_edges  # noqa: E402
 from metagraph.generation.landmarks import place_landmarks  # noqa: E402
-from metagraph.generation.networks import FlowSizes, Kind, make_sizes  # noqa: E402
+from metagraph.generation.networks import FlowSizes, Kind, Sizes, make_sizes  # noqa: E402
 from metagraph.generation.stored import make_skeleton_card  # noqa: E402
 from metagraph.generation.train_plan import TrainingPlan, TrainingSettings  # noqa: E402
 from metagraph.generation.training.learner import FUTILE, Learner, TrainingError  # noqa: E402
+from metagraph.generation.training.losses import FlowObjective  # noqa: E402
 from metagraph.graph.model import Project  # noqa: E402
 from metagraph.playback.bake import bake  # noqa: E402
 from metagraph.playback.evaluator import Evaluator  # noqa: E402
@@ -110,25 +111,35 @@ def test_a_clip_of_ten_seconds_is_learned_by_heart(sample: Project) -> None:
     assert 100 * np.linalg.norm(apart, axis=-1).mean() < 0.5
 
 
-@pytest.mark.parametrize(("kind", "steps"), [("matching", 500), ("flow-vae", 250)])
-def test_what_is_planted_is_found_with_what_is_heard_and_not_without(kind: Kind, steps: int) -> None:
-    learned, held, other = [toy(1500, n) for n in range(4)], toy(1500, 99), toy(1500, 7)
-    sizes = toy_sizes(kind)
-    settings = TrainingSettings(batch=32, frames=96, warm=100, rate=3e-3, known=1.0, kept=0.99)
+def learn_toys(kind: Kind, sizes: Sizes, steps: int, **changes: Any) -> Learner:
+    """A training on four toys."""
+    options = {"batch": 32, "frames": 96, "warm": 100, "rate": 3e-3, "known": 1.0, "kept": 0.99}
     own = Learner(
         TrainingPlan(
             kind=kind,
             sizes=sizes,
-            settings=settings,
+            settings=TrainingSettings(**(options | changes)),
             skeleton=make_skeleton_card(rig()),
             takes=(),
             held=(),
             out="toy",
         ),
-        learned,
+        [toy(1500, n) for n in range(4)],
     )
     for n in range(steps):
         own.advance(n / steps)
+    return own
+
+
+@pytest.mark.parametrize(
+    ("kind", "guess", "steps"), [("matching", False, 500), ("flow-vae", False, 250), ("flow-vae", True, 250)]
+)
+def test_what_is_planted_is_found_with_what_is_heard_and_not_without(
+    kind: Kind, guess: bool, steps: int
+) -> None:
+    held, other = toy(1500, 99), toy(1500, 7)
+    sizes = toy_sizes(kind, guess)
+    own = learn_toys(kind, sizes, steps)
     weights = own.weights()
 
     def made(told: Any) -> Any:
@@ -148,3 +159,25 @@ def test_what_is_planted_is_found_with_what_is_heard_and_not_without(kind: Kind,
     peaks = [round(25 * p) for p in held.marks.peaks]
     first = [poses[p, :3].mean() > poses[p, 6:9].mean() for p in peaks]
     assert 0.15 < np.mean(first) < 0.85
+
+
+@pytest.mark.parametrize("dropped", [0.3, 1.0])
+def test_the_flow_makes_use_of_the_past_that_it_is_told(dropped: float) -> None:
+    """To a flow that knows the past, codes are less likely after another past, which the guess does not see;
+    to one that never learned it (so the test can fail), as likely."""
+    own = learn_toys("flow-vae", toy_sizes("flow-vae", True), 200, past_dropped=dropped)
+    objective = own.objective
+    assert isinstance(objective, FlowObjective)
+    objective.settings = TrainingSettings(batch=256, frames=96, past_dropped=0.0)
+    with torch.no_grad():
+        batch = objective._batch(own.corpus, own.chance)
+        width = own.plan.sizes.control.width  # type: ignore[union-attr]
+        strange = torch.cat([batch.context[..., :width].roll(1, 0), batch.context[..., width:]], -1)
+        right, wrong = (nats(objective, batch.codes, context) for context in (batch.context, strange))
+    assert (wrong - right > 0.25) == (dropped < 1)
+
+
+def nats(objective: FlowObjective, codes: Any, context: Any) -> float:
+    """How unlikely codes are, the mean of all moments, up to a constant."""
+    z, logs = objective.net.flow(codes, context)
+    return float((0.5 * (z * z).sum(-1) - logs).mean())

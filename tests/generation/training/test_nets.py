@@ -24,7 +24,7 @@ from metagraph.generation.noise import draw_noise  # noqa: E402
 from metagraph.generation.poses import FURTHEST  # noqa: E402
 from metagraph.generation.sampler import generate_recording_poses  # noqa: E402
 from metagraph.generation.stored import Model  # noqa: E402
-from metagraph.generation.training.flow_net import CvaeNet, FlowNet  # noqa: E402
+from metagraph.generation.training.flow_net import CvaeNet, FlowNet, mask_sound  # noqa: E402
 from metagraph.generation.training.matching_net import MatchingNet  # noqa: E402
 from metagraph.generation.training.nets import make_net, read_net_weights  # noqa: E402
 from tests.generation.makers import shaken, tiny, untrained  # noqa: E402
@@ -54,9 +54,10 @@ def drawn(model: Model, told: Any, seed: int, lookahead: int | None) -> Any:
 def _frames(net: FlowNet | CvaeNet, model: Model, told: Any, seed: int, lookahead: int | None) -> Any:
     sizes = net.sizes
     control = sizes.control
-    heard = torch.from_numpy(model.heard(with_edges(told, control.before, control.ahead)))[None]
+    features = torch.from_numpy(model.heard(with_edges(told, control.before, control.ahead)))[None]
     ahead = None if lookahead is None else torch.tensor([lookahead])
-    heard = net.heard(heard, ahead)
+    heard = net.heard(features, ahead)
+    deaf = net.heard(mask_sound(features, torch.tensor([True])), ahead)
     span = sizes.span if isinstance(sizes, FlowSizes) else 1
     past = torch.zeros(1, 1, max(1, control.past), sizes.pose)
     guessed = isinstance(net, FlowNet) and net.sizes.guess
@@ -65,11 +66,15 @@ def _frames(net: FlowNet | CvaeNet, model: Model, told: Any, seed: int, lookahea
         past = held.expand(1, 1, control.past, -1)
     out: list[Any] = []
     state: Any = None
+    other: Any = None  # of the same flow without sound
     for t in range(0, len(told), span):
         z = torch.from_numpy(draw_noise(seed, 0, t, sizes.dims))[None, None]
         context = net.context(heard[:, t : t + 1], past)
         if isinstance(net, FlowNet):
             code, state = net.flow.inverse(z, context, state)
+            if net.sizes.guided:
+                without, other = net.flow.inverse(z, net.context(deaf[:, t : t + 1], past), other)
+                code = without + chunks.GUIDANCE * (code - without)
             if guessed:
                 code = net.guess.complete(code, past).clamp(-FURTHEST, FURTHEST)
                 past = torch.cat([past, code[:, :, None]], 2)[:, :, -control.past :]
@@ -149,7 +154,9 @@ def odd(kind: Kind) -> Sizes:
         return FlowSizes(control=far, code="none", dims=78, steps=2, units=5, layers=2)
     if kind == "flow-vae":
         control = Control(width=8, past=2)
-        return FlowSizes(control=control, between=20, dims=7, steps=2, units=6, span=4, guess=True)
+        return FlowSizes(
+            control=control, between=20, dims=7, steps=2, units=6, span=4, guess=True, guided=True
+        )
     return MatchingSizes(dims=5, past=1, new=2, ahead=0, hidden=12, heads=3, layers=1, time=6, width=5)
 
 
