@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from argparse import ArgumentParser, BooleanOptionalAction, Namespace
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -81,10 +81,15 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--sticks", action="store_true", help="draw a stick figure where a character has no mesh"
     )
     parser.add_argument("--theme", choices=("dark", "light"), default="dark")
-    from preview.looks import BACKDROPS, LIGHTS, SEATS, STAGE, STUDIO
+    from preview.looks import BACKDROPS, LIGHTS, SEATS, STUDIO
 
     parser.add_argument("--light", choices=tuple(LIGHTS), default=STUDIO, help="the light")
-    parser.add_argument("--background", choices=tuple(BACKDROPS), default=STAGE, help="the background")
+    parser.add_argument(
+        "--background",
+        metavar="NAME",
+        help=f"the background: {', '.join(BACKDROPS)}, studio, room, a colour such as #8090a0, or a PNG, "
+        "JPEG or WebP file (default: the project's, else stage)",
+    )
     parser.add_argument("--seat", choices=SEATS, default=SEATS[0], help="what a character sits on that sits")
 
 
@@ -116,6 +121,29 @@ def load_props(shown: ShownPlayback, folder: Path) -> PropMeshes | None:
         for problem in problems:
             print(f"note: {problem}", file=sys.stderr)
     return out
+
+
+def make_render_look(
+    project: Project, folder: Path, theme: str, light: str, background: str | None
+) -> SceneTheme:
+    """Return the light and the background of pictures. background: as `--background` has it, None for the
+    project's. Raises FileError and ValueError.
+    """
+    from app.stage.backdrop import read_backdrop, set_backdrop
+    from preview.looks import BACKDROPS, look_of
+
+    if background is not None and background in BACKDROPS:
+        return look_of(theme, light, background)
+    if background is not None:
+        found = read_backdrop(background, Path())
+        if found is None:
+            names = ", ".join((*BACKDROPS, "studio", "room"))
+            raise ValueError(
+                f"there is no background '{background}'; choose {names}, a colour such as #8090a0, "
+                "or a picture"
+            )
+        project, folder = replace(project, backdrop=found), Path()
+    return set_backdrop(look_of(theme, light), project, folder)
 
 
 def read_size(text: str) -> tuple[int, int]:
@@ -209,14 +237,14 @@ def run(options: Namespace) -> int:
             style = options.bvh_order, options.bvh_metres
             bake_to(out, one, options.seconds, options.fps, one.folder or folder, options.start, style)
     else:
-        from preview.looks import look_of
-
         seen = [
             (load_figure(one.project, one.folder or folder, options.sticks), one) for one in shown.everyone
         ]
         heard = options.out.suffix == ".mp4"
         sound = mix_sound(shown, folder, options.seconds, options.start) if heard else None
-        look = look_of(options.theme, options.light, options.background)
+        if options.background is not None and Path(options.background).suffix:
+            declare_inputs(Path(options.background))
+        look = make_render_look(project, folder, options.theme, options.light, options.background)
         direction = _direction(project, options, shown, folder, seen)
         props = load_props(shown, folder)
         shot = Shot(

@@ -34,9 +34,9 @@ class RenderOrder:
 
     `performance` is the id of a kept one, None to improvise in `mode`. `conversation` is the id of one,
     then with all its sides. `size` is width and height in pixels. `light` and `background` are names from
-    `preview.looks`. `start` is the second at which it begins. `captions` shows words, `cuts` uses a
-    conversation's camera cuts, and `sticks` draws a stick figure where a character has no mesh. `seat` is one
-    of `preview.looks.SEATS`.
+    `preview.looks`; no background is the project's. `start` is the second at which it begins. `captions`
+    shows words, `cuts` uses a conversation's camera cuts, and `sticks` draws a stick figure where a character
+    has no mesh. `seat` is one of `preview.looks.SEATS`.
     """
 
     out: Path
@@ -47,7 +47,7 @@ class RenderOrder:
     theme: str = "dark"
     conversation: str | None = None
     light: str = "studio"
-    background: str = "stage"
+    background: str | None = None
     start: float = 0.0
     captions: bool = False
     cuts: bool = True
@@ -78,8 +78,6 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
             wanted.theme,
             "--light",
             wanted.light,
-            "--background",
-            wanted.background,
             "--seat",
             wanted.seat,
             "--progress",
@@ -87,6 +85,8 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
             f"{wanted.start:.6f}",
             "--captions" if wanted.captions else "--no-captions",
         ]
+        if wanted.background is not None:
+            words += ["--background", wanted.background]
         if not wanted.cuts:
             words.append("--no-cuts")
         if wanted.sticks:

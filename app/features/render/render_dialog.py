@@ -139,6 +139,9 @@ class RenderDialog(QDialog):
             for name in choices:
                 box.addItem(tr(look_name(name)), name)
             box.setCurrentIndex(box.findData(now))
+        if self.performance.document.project.backdrop.kind:
+            self.background.insertItem(0, tr("The project's"), None)
+            self.background.setCurrentIndex(0)
         self.form.addRow(tr("Light"), self.light)
         self.form.addRow(tr("Background"), self.background)
         self.captions = QCheckBox(tr("Show the spoken words at the bottom of the picture"), self)
