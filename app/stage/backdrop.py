@@ -6,6 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from metagraph.common.budgets import PICTURE_PIXELS
 from metagraph.common.network_paths import is_closed
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from preview.scene import BackPicture, SceneTheme
 
 SIDE = 2560  # pixels: larger pictures are reduced
-LARGEST = 67_000_000  # pixels of a picture that is read
 
 
 def set_backdrop(look: SceneTheme, project: Project, folder: Path | None) -> SceneTheme:
@@ -27,7 +27,7 @@ def set_backdrop(look: SceneTheme, project: Project, folder: Path | None) -> Sce
 
     backdrop = project.backdrop
     if backdrop.kind == "color":
-        red, green, blue = (int(backdrop.color[n : n + 2], 16) / 255 for n in (1, 3, 5))
+        red, green, blue = (value / 255 for value in backdrop.color)
         return set_plain_color(look, (red, green, blue))
     if backdrop.kind == "picture":
         return set_back_picture(look, read_back_picture((folder or Path()) / backdrop.path))
@@ -61,8 +61,10 @@ def _read(path: Path, changed: int) -> BackPicture:
     from preview.scene import BackPicture
 
     with Image.open(path) as image:
-        if image.width * image.height > LARGEST:
-            raise ValueError(phrase("it has more than {most} million pixels", most=LARGEST // 1_000_000))
+        if image.width * image.height > PICTURE_PIXELS:
+            raise ValueError(
+                phrase("it has more than {most} million pixels", most=PICTURE_PIXELS // 1_000_000)
+            )
         image.draft("RGB", (SIDE, SIDE))
         upright = ImageOps.exif_transpose(image).convert("RGB")
     upright.thumbnail((SIDE, SIDE))
@@ -76,7 +78,7 @@ def read_backdrop(text: str, folder: Path) -> Backdrop | None:
     if text in ("studio", "room"):
         return Backdrop(kind="studio" if text == "studio" else "room")
     if len(text) == 7 and text[0] == "#" and all(c in "0123456789abcdefABCDEF" for c in text[1:]):
-        return Backdrop(kind="color", color=text.lower())
+        return Backdrop(kind="color", color=tuple(bytes.fromhex(text[1:])))
     if Path(text).suffix:
         read_back_picture(folder / text)
         return Backdrop(kind="picture", path=text)

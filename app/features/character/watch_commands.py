@@ -334,9 +334,11 @@ def choose_project_backdrop(shell: Shell, kind: BackdropKind) -> None:
     document = shell.document
     before = document.project.backdrop
     if kind == "color":
-        color = QColorDialog.getColor(QColor(before.color), shell.widget, tr("Colour of the background"))
+        color = QColorDialog.getColor(QColor(*before.color), shell.widget, tr("Colour of the background"))
         if color.isValid():
-            set_project_backdrop(shell, Backdrop(kind="color", color=color.name()))
+            set_project_backdrop(
+                shell, Backdrop(kind="color", color=(color.red(), color.green(), color.blue()))
+            )
     elif kind == "picture":
         folder = find_start_folder(document.folder)
         name, _ = QFileDialog.getOpenFileName(

@@ -43,7 +43,7 @@ def photo(tmp_path: Path) -> Path:
     [
         Backdrop(),
         Backdrop(kind="room"),
-        Backdrop(kind="color", color="#102030"),
+        Backdrop(kind="color", color=(16, 32, 48)),
         Backdrop(kind="picture", path="a/photo.png"),
     ],
 )
@@ -89,10 +89,10 @@ def test_a_picture_is_upright_not_too_large_and_read_again_when_it_changes(tmp_p
 
 def test_names_on_the_command_line(photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert read_backdrop("room", tmp_path) == Backdrop(kind="room")
-    assert read_backdrop("#AABBcc", tmp_path) == Backdrop(kind="color", color="#aabbcc")
+    assert read_backdrop("#AABBcc", tmp_path) == Backdrop(kind="color", color=(0xAA, 0xBB, 0xCC))
     assert read_backdrop("photo.png", tmp_path) == Backdrop(kind="picture", path="photo.png")
     assert read_backdrop("beach", tmp_path) is None and read_backdrop("#12345z", tmp_path) is None
-    project = Project(backdrop=Backdrop(kind="color", color="#ff0000"))
+    project = Project(backdrop=Backdrop(kind="color", color=(255, 0, 0)))
     assert make_render_look(project, tmp_path, "dark", "studio", None).top == (1, 0, 0)
     assert make_render_look(project, tmp_path, "dark", "studio", "white").top == (1, 1, 1)
     assert make_render_look(project, tmp_path, "dark", "studio", "room").walls is not None

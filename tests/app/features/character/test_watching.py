@@ -240,7 +240,7 @@ def test_a_background_of_the_project_is_chosen_saved_undone_and_offered_for_rend
     dialog.close()
     monkeypatch.setattr(QColorDialog, "getColor", lambda *_: QColor("#336699"))
     choose("Plain colour")
-    assert document.project.backdrop.color == "#336699" and view.theme.walls is None
+    assert document.project.backdrop.color == (0x33, 0x66, 0x99) and view.theme.walls is None
     assert tuple(round(255 * x) for x in view.theme.top) == (0x33, 0x66, 0x99)
     document.undo()
     assert document.project.backdrop.kind == "room" and view.theme.walls is not None
