@@ -53,6 +53,9 @@ class ViewBackdrop:
         if scene.background is not None:
             target.clear(*scene.background, viewport=(0, 0, width, height))
             return 0
+        if frame.theme.transparent:
+            target.clear(0.0, 0.0, 0.0, 0.0, viewport=(0, 0, width, height))
+            return 0
         if frame.theme.picture is not None and scene.ground:
             target.clear(*frame.theme.top, 1.0, viewport=(0, 0, width, height))
             self._behind(frame.theme.picture.pixels, frame.size, fill=True)

@@ -149,6 +149,7 @@ class SceneTheme:
     toward: Color = (-0.42, 0.80, 0.62)  # direction to the lamp, of any length, above the ground
     walls: Walls | None = None  # instead of ground and sky
     picture: BackPicture | None = None  # instead of ground and sky; shadows fall on it
+    transparent: bool = False  # nothing is behind the figures, not even a ground
 
     def turned(self, by: LampTurn) -> SceneTheme:
         """Return the theme with its lamp turned."""

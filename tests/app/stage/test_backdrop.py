@@ -143,3 +143,19 @@ def test_room_studio_and_picture_are_drawn(photo: Path) -> None:
         warm = set_backdrop(look_of("light", "evening"), Project(backdrop=Backdrop(kind="studio")), None)
         evening = drawn(warm)
         assert evening[20, 80, 0] - evening[20, 80, 2] > 10, "the light colours it"
+
+
+@pytest.mark.gl
+def test_a_transparent_picture_has_alpha_that_is_not_premultiplied(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    sample = str(Path(__file__).resolve().parents[3] / "sample_clips" / "sample.metagraph.yaml")
+    out = tmp_path / "a.png"
+    words = ["render", sample, "-s", "1", "--frames", "1", "--size", "80x120", "--transparent"]
+    assert main([*words, "-o", str(out)]) == 0
+    pixels = np.asarray(Image.open(out)).astype(int)
+    assert pixels.shape == (120, 80, 4) and pixels[0, 0, 3] == 0 and pixels[60, 40, 3] == 255
+    edge = (pixels[..., 3] > 60) & (pixels[..., 3] < 200)
+    assert edge.any() and pixels[edge][:, :3].max(1).mean() > 60, "edges are not darkened"
+    assert main([*words, "-o", str(tmp_path / "a.mp4")]) == 1
+    assert "no transparency" in capsys.readouterr().err
