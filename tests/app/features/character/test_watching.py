@@ -237,6 +237,10 @@ def test_a_background_of_the_project_is_chosen_saved_undone_and_offered_for_rend
     assert document.project.backdrop.kind == "room" and view.theme.walls is not None
     dialog = RenderDialog(shown.performance, shown.session, shown.jobs)
     assert dialog.background.currentText() == "The project's" and dialog.background.currentData() is None
+    for suffix, shows in ((".mov", "Transparent"), (".mp4", "The project's"), (".webm", "Transparent")):
+        dialog.kind.setCurrentIndex(dialog.kind.findData(suffix))
+        dialog.kind.activated.emit(dialog.kind.currentIndex())
+        assert dialog.background.currentText() == shows and dialog.file.text().endswith(suffix)
     dialog.close()
     monkeypatch.setattr(QColorDialog, "getColor", lambda *_: QColor("#336699"))
     choose("Plain colour")
