@@ -13,7 +13,7 @@ from preview import shaders
 from preview.camera import Camera
 from preview.drawing import SceneDrawing, set_uniforms
 from preview.frame import Frame
-from preview.scene import SceneTheme
+from preview.scene import THEMES, SceneTheme, Walls
 
 Array = NDArray[Any]
 
@@ -53,6 +53,13 @@ class ViewBackdrop:
         if scene.background is not None:
             target.clear(*scene.background, viewport=(0, 0, width, height))
             return 0
+        if frame.theme.transparent:
+            target.clear(0.0, 0.0, 0.0, 0.0, viewport=(0, 0, width, height))
+            return 0
+        if frame.theme.picture is not None and scene.ground:
+            target.clear(*frame.theme.top, 1.0, viewport=(0, 0, width, height))
+            self._behind(frame.theme.picture.pixels, frame.size, fill=True)
+            return _find_far_row(frame, 60.0)
         return self._ground_and_sky(frame, target)
 
     def _ground_and_sky(self, frame: Frame, target: Any) -> int:
@@ -72,10 +79,10 @@ class ViewBackdrop:
         target.use()
         return self._sky_from
 
-    def _behind(self, picture: Array, size: tuple[int, int]) -> None:
-        """Draw a picture as large as it fits."""
+    def _behind(self, picture: Array, size: tuple[int, int], fill: bool = False) -> None:
+        """Draw a picture as large as it fits, or so large that nothing is left empty."""
         high, wide = picture.shape[:2]
-        scale = min(size[0] / wide, size[1] / high)
+        scale = (max if fill else min)(size[0] / wide, size[1] / high)
         part = (wide * scale / size[0], high * scale / size[1])
         self._drawing.picture(picture).use(5)
         program = self._drawing.program("behind", shaders.COVER, shaders.BEHIND)
@@ -85,6 +92,10 @@ class ViewBackdrop:
     def _empty_stage(self, frame: Frame, target: Any) -> int:
         """Draw ground and sky so that no pixel is painted twice. Return the row at which the sky begins."""
         camera, (width, height) = frame.camera, frame.size
+        walls = frame.theme.walls
+        if walls is not None and frame.scene.ground:
+            self._walls(frame, walls)
+            return _find_far_row(frame, max(map(abs, (*walls.low[::2], *walls.high[::2]))))
         sky_from = 0
         if frame.scene.ground and camera.eye[1] > 0:
             reach = min(60.0, max(7.0, 2.2 * camera.distance))
@@ -105,6 +116,18 @@ class ViewBackdrop:
             )
             target.scissor = None
         return sky_from
+
+    def _walls(self, frame: Frame, walls: Walls) -> None:
+        """Draw a studio or a room."""
+        right, up, back = frame.camera.axes
+        tall = math.tan(frame.camera.fov / 2)
+        program = self._drawing.program("walls", shaders.COVER, shaders.WALLS)
+        set_uniforms(program, u_eye=frame.camera.eye, u_ahead=-back)
+        set_uniforms(program, u_right=right * (tall * frame.size[0] / frame.size[1]), u_above_eye=up * tall)
+        set_uniforms(program, u_low=walls.low, u_high=walls.high, u_bend=walls.bend)
+        set_uniforms(program, u_floor=walls.floor, u_wall=walls.wall, u_furnished=float(walls.furnished))
+        set_uniforms(program, u_tint=find_tint(frame.theme), u_to_light=frame.theme.to_light)
+        self._sky("walls", program, frame, moderngl.TRIANGLES, 3)
 
     def _ground(
         self, frame: Frame, patch: tuple[float, ...], turn: tuple[float, float], reach: float
@@ -127,3 +150,27 @@ class ViewBackdrop:
             u_bottom=frame.theme.bottom,
         )
         self._drawing.bare(key, program).render(mode, count)
+
+
+def find_tint(theme: SceneTheme) -> tuple[float, float, float]:
+    """Return the colour of a light on white, sRGB, 1 for the studio's."""
+    plain = THEMES[theme.name]
+    lights = [
+        0.5 * np.array(x.key) + 0.5 * np.array(x.above) + 0.3 * np.array(x.below) for x in (theme, plain)
+    ]
+    red, green, blue = np.clip((lights[0] / lights[1]) ** (1 / 2.2), 0.3, 1.15).tolist()
+    return red, green, blue
+
+
+def _find_far_row(frame: Frame, reach: float) -> int:
+    """Return the row, counted from below, up to which a floor is seen that ends `reach` metres away; 0 from
+    below the floor.
+    """
+    camera, (width, height) = frame.camera, frame.size
+    if not frame.scene.ground or camera.eye[1] <= 0:
+        return 0
+    ends = [(x * reach, 0.0, z * reach) for x in (-1, 0, 1) for z in (-1, 0, 1)]
+    seen = camera.project(ends, width / height)[:, 1]
+    if not np.isfinite(seen).any():
+        return 0
+    return int(np.clip((1 - np.nanmin(seen)) * height + 1, 0, height))

@@ -50,7 +50,7 @@ class Frame:
     def floor(self) -> bool:
         """Whether the ground is seen from above."""
         scene = self.scene
-        plain = scene.background is None and scene.picture is None
+        plain = scene.background is None and scene.picture is None and not self.theme.transparent
         return scene.ground and plain and float(self.camera.eye[1]) > 0
 
     @cached_property

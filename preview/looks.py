@@ -5,10 +5,10 @@ The light "studio" and the background "stage" leave the theme unchanged.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from preview.scene import THEMES, Color, SceneTheme
+from preview.scene import THEMES, BackPicture, Color, SceneTheme, Walls
 
 
 @dataclass(frozen=True)
@@ -103,6 +103,13 @@ BACKDROPS: Mapping[str, BackdropLook | None] = {
     "black": _plain("Black", (0.0, 0.0, 0.0)),
     "green": _plain("Green, for keying", (0.0, 0.69, 0.25), False),
 }
+# What a project has behind its character: a studio whose floor turns into the wall, and a room. In metres
+# from the ground between the character's feet; they are larger where props stand farther away.
+PLACES: Mapping[str, Walls] = {
+    "studio": Walls((-4.2, 0.0, -3.2), (4.2, 6.0, 5.2), 1.4, (0.74, 0.74, 0.75), (0.70, 0.705, 0.72)),
+    "room": Walls((-2.7, 0.0, -2.1), (2.7, 2.7, 3.6), 0.0, (0.60, 0.45, 0.32), (0.83, 0.80, 0.75), True),
+}
+MARGIN = 0.7  # metres between the middle of a prop and a wall
 NAMES_OF_KEPT = {STUDIO: "Studio", STAGE: "Stage, as in the window"}
 
 
@@ -140,3 +147,41 @@ def look_of(theme: str, light: str = STUDIO, backdrop: str = STAGE) -> SceneThem
             ink=THEMES["light" if bright else "dark"].ink,
         )
     return out
+
+
+def set_place(look: SceneTheme, name: str, round_: Sequence[Sequence[float]] = ()) -> SceneTheme:
+    """Return a look in one of PLACES, large enough for what stands at some points, metres."""
+    walls = PLACES[name]
+    low, high = list(walls.low), list(walls.high)
+    for at in round_:
+        for axis in (0, 2):
+            low[axis] = min(low[axis], at[axis] - MARGIN - walls.bend)
+            high[axis] = max(high[axis], at[axis] + MARGIN + walls.bend)
+    walls = replace(walls, low=(low[0], low[1], low[2]), high=(high[0], high[1], high[2]))
+    return replace(_on_plain_ground(look, walls.wall), walls=walls, floor=walls.floor)
+
+
+def set_plain_color(look: SceneTheme, color: Color) -> SceneTheme:
+    """Return a look before one colour, sRGB."""
+    return _on_plain_ground(look, color)
+
+
+def set_back_picture(look: SceneTheme, picture: BackPicture) -> SceneTheme:
+    """Return a look before a picture."""
+    mean = picture.pixels.reshape(-1, 3).mean(0) / 255
+    return replace(_on_plain_ground(look, (float(mean[0]), float(mean[1]), float(mean[2]))), picture=picture)
+
+
+def _on_plain_ground(look: SceneTheme, color: Color) -> SceneTheme:
+    bright = sum(color) > 1.5
+    return replace(
+        look,
+        top=color,
+        bottom=color,
+        floor=color,
+        line=color,
+        line_strength=0.0,
+        walls=None,
+        picture=None,
+        ink=THEMES["light" if bright else "dark"].ink,
+    )

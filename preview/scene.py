@@ -106,6 +106,29 @@ def _same(a: Actor, b: Actor) -> bool:
 
 
 @dataclass(frozen=True)
+class Walls:
+    """A studio or a room round the character, seen from inside: walls between the eye and it are not drawn.
+
+    `low` and `high` are its corners in metres. `bend` is the radius with which the floor turns into the
+    walls. Colours are sRGB. `furnished` adds boards on the floor, a skirting board, a window and a ceiling.
+    """
+
+    low: Color
+    high: Color
+    bend: float
+    floor: Color
+    wall: Color
+    furnished: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class BackPicture:
+    """A picture that fills what is behind the character: uint8 `[H, W, 3]`, sRGB, first row at the top."""
+
+    pixels: Array
+
+
+@dataclass(frozen=True)
 class SceneTheme:
     """The colours of a theme: sky, floor and ink in sRGB 0..1, lights linear. All are neutral, because in the
     window colours stand for kinds.
@@ -124,6 +147,9 @@ class SceneTheme:
     rim: Color
     ink: Color  # the skeleton drawn over a mesh
     toward: Color = (-0.42, 0.80, 0.62)  # direction to the lamp, of any length, above the ground
+    walls: Walls | None = None  # instead of ground and sky
+    picture: BackPicture | None = None  # instead of ground and sky; shadows fall on it
+    transparent: bool = False  # nothing is behind the figures, not even a ground
 
     def turned(self, by: LampTurn) -> SceneTheme:
         """Return the theme with its lamp turned."""

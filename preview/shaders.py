@@ -433,6 +433,95 @@ void main() {
 }
 """
 
+# A studio or a room, by a ray for each pixel: the place where it leaves the box. Of a wall that is nearer than
+# the box nothing is seen. Lengths are metres.
+WALLS = (
+    "#version 330 core\n"
+    + _SKY
+    + """
+uniform vec3 u_eye, u_right, u_ahead, u_above_eye;  // the second to fourth: to the picture's side, middle, top
+uniform vec3 u_low, u_high, u_floor, u_wall, u_tint, u_to_light;
+uniform float u_bend, u_furnished;
+in vec2 v_at;
+out vec4 o_color;
+const float BOARD = 0.14, PLINTH = 0.09, SHEET = 0.35;
+// How far a place is outside the box with round edges, less than 0 inside.
+float outside(vec3 p) {
+    vec3 q = abs(p - (u_low + u_high) * 0.5) - (u_high - u_low) * 0.5 + u_bend;
+    return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0) - u_bend;
+}
+// 1 inside a rectangle, with an edge of a pixel, which is w wide.
+float inside(vec2 p, vec2 w, vec2 low, vec2 high) {
+    vec2 a = clamp((p - low) / w + 0.5, 0.0, 1.0) * clamp((high - p) / w + 0.5, 0.0, 1.0);
+    return a.x * a.y;
+}
+float grain(vec2 p) { return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453); }
+void main() {
+    vec3 way = normalize(u_ahead + (v_at.x * 2.0 - 1.0) * u_right + (v_at.y * 2.0 - 1.0) * u_above_eye);
+    vec3 safe = way + vec3(equal(way, vec3(0.0))) * 1e-6;
+    vec3 to_low = (u_low - u_eye) / safe, to_high = (u_high - u_eye) / safe;
+    vec3 first = min(to_low, to_high), last = max(to_low, to_high);
+    float near = max(max(first.x, first.y), first.z), far = min(min(last.x, last.y), last.z);
+    vec3 p = u_eye + way * far;
+    vec3 middle = (u_low + u_high) * 0.5;
+    vec3 n = -sign(p - middle);
+    if (u_bend > 0.001) {
+        for (int i = 0; i < 6; ++i) p -= way * max(outside(p), 0.0);  // back to the round edge
+        n *= normalize(max(abs(p - middle) - (u_high - u_low) * 0.5 + u_bend, 1e-4));
+    } else {
+        n *= last.x <= far ? vec3(1.0, 0.0, 0.0) : last.y <= far ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
+    }
+    float floored = smoothstep(0.4, 0.95, n.y);
+    vec3 color = mix(u_wall, u_floor, floored);
+    float light = 0.80 + 0.14 * max(dot(n, u_to_light), 0.0) + 0.06 * n.y;
+    if (u_furnished > 0.5) {
+        vec2 ground = vec2(p.x, p.z) / vec2(BOARD, 1.9);
+        vec2 w = max(fwidth(ground), vec2(1e-5));
+        ground.y += 0.37 * floor(ground.x);
+        vec2 seam = clamp(1.2 - min(fract(ground), 1.0 - fract(ground)) / w, 0.0, 1.0);
+        float seams = max(seam.x * clamp(0.3 / w.x - 0.5, 0.0, 1.0), seam.y * clamp(0.3 / w.y - 0.5, 0.0, 1.0));
+        float glass = 0.0, frame = 0.0;  // of a window in the wall on the left
+        vec2 pane = vec2(p.z - middle.z, p.y), thin = max(fwidth(pane), vec2(1e-5));
+        if (n.y > 0.5) {
+            color *= 0.90 + 0.20 * grain(floor(ground)) * clamp(0.5 / w.x, 0.0, 1.0);
+            color *= 1.0 - 0.35 * seams;
+        } else if (n.y < -0.5) {
+            color = vec3(0.93, 0.92, 0.90);
+        } else {
+            float top = u_low.y + PLINTH, wide = thin.y;
+            color = mix(color, vec3(0.93, 0.92, 0.90), clamp((top - p.y) / wide + 0.5, 0.0, 1.0));
+            color *= 1.0 - 0.25 * clamp(1.2 - abs(p.y - top) / wide, 0.0, 1.0);
+            if (n.x > 0.5) {
+                frame = inside(pane, thin, vec2(-0.95, 0.85), vec2(0.95, 2.25));
+                for (int i = 0; i < 4; ++i) {
+                    vec2 low = vec2((i & 1) == 0 ? -0.88 : 0.03, i < 2 ? 0.92 : 1.78);
+                    glass += inside(pane, thin, low, low + vec2(0.85, i < 2 ? 0.80 : 0.40));
+                }
+                color = mix(color, vec3(0.95, 0.94, 0.92), frame);
+            }
+            light *= n.x > 0.5 ? 0.90 : n.x < -0.5 ? 1.04 : 1.0;
+        }
+        // Corners are darker.
+        vec3 gap = min(p - u_low, u_high - p);
+        vec3 dark = exp(-max(gap, 0.0) / SHEET) * (1.0 - abs(n));
+        light *= (1.0 - 0.22 * dark.x) * (1.0 - 0.22 * dark.y) * (1.0 - 0.22 * dark.z);
+        if (n.y > 0.5) {  // what comes in through the window
+            vec2 spot = (vec2(p.x - u_low.x, p.z - middle.z) - vec2(1.7, -0.2)) / vec2(1.5, 1.3);
+            light += 0.22 * exp(-2.0 * dot(spot, spot));
+        }
+        color = mix(color * light, vec3(0.86, 0.93, 1.0) * (0.92 + 0.1 * pane.y / 2.2), clamp(glass, 0.0, 1.0));
+    } else {
+        vec2 off = vec2(p.x, p.z) - middle.xz;
+        light *= 1.0 - 0.16 * smoothstep(1.0, 4.5, length(vec3(off.x, 0.7 * p.y, off.y)));
+        color *= light * 1.06;
+    }
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+    color = clamp(color * u_tint, 0.0, 1.0) + (noise - 0.5) / 255.0;
+    o_color = vec4(far > max(near, 0.0) ? color : sky(), 1.0);
+}
+"""
+)
+
 # Smooths edges found by contrast: mixes a pixel with its neighbours along the edge. Reading farther pixels
 # shows no improvement, and in software reading between pixels takes four times as long as reading one.
 SMOOTH = """#version 330 core

@@ -27,10 +27,12 @@ def make_contact_sheet(
     title: str = "",
     notes: Sequence[str] = (),
     gap: int = 12,
-    paper: Color = PAPER,
+    paper: Color | None = PAPER,
     ink: Color = INK,
 ) -> Array:
     """Return one picture `[H, W, 3]` uint8 of `images` (uint8 `[h, w, 3 or 4]`, any sizes) in `columns`.
+    Without `paper` it is `[H, W, 4]`, transparent between and behind the images, whose alpha is not
+    premultiplied.
 
     `labels` holds a line under each image, `notes` a second, fainter line. Text that is too long for its
     image ends in an ellipsis.
@@ -45,25 +47,35 @@ def make_contact_sheet(
     lines = (1 if any(labels) else 0) + (1 if any(notes) else 0)
     cell = height + round(lines * text * 1.45) + (6 if lines else 0)
     head = round(text * 2.6) if title else 0
-    page = Image.new("RGB", (columns * (width + gap) + gap, head + rows * (cell + gap) + gap), paper)
+    whole = (columns * (width + gap) + gap, head + rows * (cell + gap) + gap)
+    page = Image.new("RGB", whole, paper) if paper is not None else Image.new("RGBA", whole, (*ink, 0))
     draw = ImageDraw.Draw(page)
     font, large = _font(text), _font(round(text * 1.3))
     if title:
         draw.text((gap, gap), _fit(draw, title, large, page.width - 2 * gap), ink, large)
-    faint = tuple((2 * a + b) // 3 for a, b in zip(ink, paper, strict=True))
+    faint = tuple((2 * a + b) // 3 for a, b in zip(ink, paper or ink, strict=True))
     for i, image in enumerate(images):
         x, y = gap + (i % columns) * (width + gap), head + gap + (i // columns) * (cell + gap)
         picture = Image.fromarray(np.ascontiguousarray(image))
         page.paste(
             picture,
             (x + (width - picture.width) // 2, y + (height - picture.height) // 2),
-            picture if picture.mode == "RGBA" else None,
+            picture if picture.mode == "RGBA" and paper is not None else None,
         )
         for line, (words, color) in enumerate(((labels, ink), (notes, faint))):
             if i < len(words):
                 at = (x, y + height + 6 + (round(line * text * 1.45) if any(labels) else 0))
                 draw.text(at, _fit(draw, words[i], font, width), color, font)
     return np.asarray(page)
+
+
+def make_straight_alpha(picture: Array) -> Array:
+    """Return a picture `[H, W, 4]` uint8 whose colours are not multiplied by alpha, as files have it."""
+    out = np.array(picture)
+    part = (out[..., 3] > 0) & (out[..., 3] < 255)
+    alpha = out[part, 3:].astype(np.uint16)
+    out[part, :3] = np.minimum((out[part, :3].astype(np.uint16) * 255 + alpha // 2) // alpha, 255)
+    return out
 
 
 def write_png(path: str | Path, picture: Array) -> None:

@@ -1,4 +1,4 @@
-"""Write pictures to an MP4 (H.264), with PyAV."""
+"""Write pictures to a video with PyAV: MP4 (H.264), or MOV (ProRes 4444) and WebM (VP9), which hold alpha."""
 
 from __future__ import annotations
 
@@ -18,6 +18,13 @@ from metagraph.formats.outputs import claim_output
 Array = NDArray[Any]
 
 IN_FLIGHT = 3  # pictures that wait for the encoder
+# By the end of the file's name: container, encoder, pixels and sound.
+ENCODINGS = {
+    ".mp4": ("mp4", "libx264", "yuv420p", "aac"),
+    ".mov": ("mov", "prores_ks", "yuva444p10le", "aac"),
+    ".webm": ("webm", "libvpx-vp9", "yuva420p", "libopus"),
+}
+OPUS_RATE = 48000  # Hz: the sound of WebM
 
 
 class Cancelled(Exception):  # noqa: N818 - not an error: the user asked for it
@@ -35,6 +42,7 @@ def write_video(
     sound: tuple[Array, int] | None = None,
 ) -> int:
     """Write `frames` (uint8 `[H, W, 3 or 4]`, sRGB, all of one size) at `fps` and return how many there were.
+    The end of the file's name says how, see `ENCODINGS`: MOV and WebM keep alpha, which is not premultiplied.
 
     `size` is the width and height of the video, by default that of the first frame, made even as H.264 needs;
     frames of another size are scaled. `quality` is x264's rate factor, 0 (lossless) .. 51. `progress` is
@@ -50,13 +58,15 @@ def write_video(
     path = Path(path)
     if not (fps > 0 and np.isfinite(fps)):
         raise FileError(path, f"{fps} frames per second is no frame rate")
-    part = path.with_name(f".{path.name}.part.mp4")
+    ending = path.suffix.lower() if path.suffix.lower() in ENCODINGS else ".mp4"
+    part = find_part_path(path)
+    options = {} if ending == ".webm" else {"movflags": "faststart"}
     try:
         with (
-            av.open(str(part), "w", format="mp4", options={"movflags": "faststart"}) as container,
+            av.open(str(part), "w", format=ENCODINGS[ending][0], options=options) as container,
             ThreadPoolExecutor(1) as encoder,
         ):
-            video = _Video(container, encoder, progress)
+            video = _Video(container, encoder, progress, ending)
             for picture in frames:
                 if cancelled is not None and cancelled():
                     raise Cancelled
@@ -70,7 +80,7 @@ def write_video(
                 )
             video.end()
             if sound is not None:
-                _write_sound(container, video.voice, sound[0], round(video.count / fps * sound[1]))
+                _write_sound(container, video.voice, sound, video.count / fps)
         with claim_output(path):
             part.replace(path)
     except OSError as error:
@@ -82,14 +92,24 @@ def write_video(
     return video.count
 
 
+def find_part_path(path: Path) -> Path:
+    """Return where a video is written until it is complete."""
+    return path.with_name(f".{path.name}.part{path.suffix}")
+
+
 class _Video:
     """A video while it is written. `stream` and `voice` are the streams of pictures and of sound, None until
     it begins. `count` is the number of pictures written.
     """
 
     def __init__(
-        self, container: Any, encoder: ThreadPoolExecutor, progress: Callable[[int], None] | None
+        self,
+        container: Any,
+        encoder: ThreadPoolExecutor,
+        progress: Callable[[int], None] | None,
+        ending: str,
     ) -> None:
+        self.ending = ending
         self.container, self.encoder, self.progress = container, encoder, progress
         self.stream: Any = None
         self.voice: Any = None
@@ -99,12 +119,20 @@ class _Video:
     def begin(self, size: tuple[int, int], fps: float, quality: int, rate: int | None) -> None:
         """Make the streams. `rate` is the number of sound samples a second, None without sound."""
         width, height = size
-        self.stream = self.container.add_stream("libx264", rate=Fraction(fps).limit_denominator(1001))
+        _, encoder, pixels, voice = ENCODINGS[self.ending]
+        self.stream = self.container.add_stream(encoder, rate=Fraction(fps).limit_denominator(1001))
         self.stream.width, self.stream.height = max(2, width + width % 2), max(2, height + height % 2)
-        self.stream.pix_fmt = "yuv420p"
-        self.stream.options = {"preset": "veryfast", "crf": str(quality), "tune": "animation"}
+        self.stream.pix_fmt = pixels
+        if self.ending == ".mov":
+            self.stream.options = {"profile": "4444", "vendor": "apl0", "alpha_bits": "16"}
+        elif self.ending == ".webm":
+            self.stream.options = {"crf": str(quality + 4), "b": "0", "deadline": "good", "cpu-used": "5"}
+            self.stream.metadata["alpha_mode"] = "1"  # readers look for alpha only then
+        else:
+            self.stream.options = {"preset": "veryfast", "crf": str(quality), "tune": "animation"}
         if rate is not None:
-            self.voice = self.container.add_stream("aac", rate=rate, layout="mono")
+            rate = OPUS_RATE if self.ending == ".webm" else rate
+            self.voice = self.container.add_stream(voice, rate=rate, layout="mono")
 
     def add(self, picture: Array) -> None:
         """Give a picture to the encoder, once there is room for one more."""
@@ -143,16 +171,23 @@ def _frame(picture: Array) -> Any:
     return frame
 
 
-def _write_sound(container: Any, stream: Any, samples: Array, count: int) -> None:
-    """Encode `count` samples, in blocks of the size that AAC uses."""
+def _write_sound(container: Any, stream: Any, sound: tuple[Array, int], seconds: float) -> None:
+    """Encode samples that have a rate, as many as seconds need, in blocks of the size that AAC uses."""
     import av
 
+    samples, rate = sound
+    if rate != stream.rate:
+        times = np.arange(round(len(samples) * stream.rate / rate)) * (rate / stream.rate)
+        samples = np.interp(times, np.arange(len(samples)), samples).astype(np.float32)
+    count = round(seconds * stream.rate)
     whole = np.zeros(count, np.float32)
     whole[: min(count, len(samples))] = samples[:count]
-    size = 1024
+    if stream.codec_context.format.name.startswith("s16"):
+        whole = np.asarray(np.clip(whole, -1, 1) * 32767, np.int16)
+    size, kind = stream.codec_context.frame_size or 1024, stream.codec_context.format.name
     for first in range(0, count, size):
         frame = av.AudioFrame.from_ndarray(
-            np.ascontiguousarray(whole[None, first : first + size]), format="fltp", layout="mono"
+            np.ascontiguousarray(whole[None, first : first + size]), format=kind, layout="mono"
         )
         frame.sample_rate, frame.pts = stream.rate, first
         for packet in stream.encode(frame):

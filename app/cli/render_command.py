@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from argparse import ArgumentParser, BooleanOptionalAction, Namespace
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from metagraph.speech.captions import Caption
     from preview.scene import SceneTheme
 
+VIDEOS = (".mp4", ".mov", ".webm")
 MOTION = (".glb", ".usda", ".bvh", ".npz")  # what `bake_to` writes
 
 
@@ -39,7 +40,8 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--out",
         type=Path,
         required=True,
-        help="the file to write: .png, .mp4, .glb, .usda, .bvh, or .npz (SMPL-H, as in AMASS)",
+        help="the file to write: .png, .mp4, .mov (ProRes 4444), .webm (VP9), .glb, .usda, .bvh, or .npz "
+        "(SMPL-H, as in AMASS)",
     )
     parser.add_argument(
         "--progress", action="store_true", help="report progress after each picture of a video"
@@ -75,17 +77,31 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--size", default="960x540", help="width x height in pixels (default: 960x540)")
     parser.add_argument("--fps", type=float, default=30.0, help="frames a second of a video (default: 30)")
     parser.add_argument(
-        "--frames", type=int, default=24, help="number of pictures on a contact sheet (default: 24)"
+        "--frames",
+        type=int,
+        default=24,
+        help="number of pictures on a contact sheet; 1 writes one picture, as large as --size (default: 24)",
     )
     parser.add_argument(
         "--sticks", action="store_true", help="draw a stick figure where a character has no mesh"
     )
     parser.add_argument("--theme", choices=("dark", "light"), default="dark")
-    from preview.looks import BACKDROPS, LIGHTS, SEATS, STAGE, STUDIO
+    from preview.looks import BACKDROPS, LIGHTS, SEATS, STUDIO
 
     parser.add_argument("--light", choices=tuple(LIGHTS), default=STUDIO, help="the light")
-    parser.add_argument("--background", choices=tuple(BACKDROPS), default=STAGE, help="the background")
+    parser.add_argument(
+        "--background",
+        metavar="NAME",
+        help=f"the background: {', '.join(BACKDROPS)}, studio, room, a colour such as #8090a0, or a PNG, "
+        "JPEG or WebP file (default: the project's, else stage)",
+    )
     parser.add_argument("--seat", choices=SEATS, default=SEATS[0], help="what a character sits on that sits")
+
+    parser.add_argument(
+        "--transparent",
+        action="store_true",
+        help="draw nothing behind the character: .png, .mov and .webm have alpha",
+    )
 
 
 def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
@@ -116,6 +132,29 @@ def load_props(shown: ShownPlayback, folder: Path) -> PropMeshes | None:
         for problem in problems:
             print(f"note: {problem}", file=sys.stderr)
     return out
+
+
+def make_render_look(
+    project: Project, folder: Path, theme: str, light: str, background: str | None
+) -> SceneTheme:
+    """Return the light and the background of pictures. background: as `--background` has it, None for the
+    project's. Raises FileError and ValueError.
+    """
+    from app.stage.backdrop import read_backdrop, set_backdrop
+    from preview.looks import BACKDROPS, look_of
+
+    if background is not None and background in BACKDROPS:
+        return look_of(theme, light, background)
+    if background is not None:
+        found = read_backdrop(background, Path())
+        if found is None:
+            names = ", ".join((*BACKDROPS, "studio", "room"))
+            raise ValueError(
+                f"there is no background '{background}'; choose {names}, a colour such as #8090a0, "
+                "or a picture"
+            )
+        project, folder = replace(project, backdrop=found), Path()
+    return set_backdrop(look_of(theme, light), project, folder)
 
 
 def read_size(text: str) -> tuple[int, int]:
@@ -163,24 +202,33 @@ def render_directed(
     del application
 
 
+def _check_options(options: Namespace) -> None:
+    """Raise ValueError for options that do not go together or are out of range."""
+    if not 1 <= options.fps <= 240:
+        raise ValueError("--fps must be 1 to 240")
+    if not 1 <= options.frames <= 1000:
+        raise ValueError("--frames must be 1 to 1000")
+    if not 0 <= options.start <= 36000:
+        raise ValueError("--start must be 0 to 36000 seconds")
+    if options.out.suffix not in (".png", *VIDEOS, *MOTION):
+        name = options.out.suffix or options.out.name
+        raise ValueError(
+            "pictures can be written as .png, videos as .mp4, .mov or .webm, motion as .glb, .usda, .bvh or "
+            f".npz, not as '{name}'"
+        )
+    if options.transparent and options.out.suffix not in (".png", ".mov", ".webm"):
+        raise ValueError(f"{options.out.suffix} has no transparency; write .png, .mov or .webm")
+    if options.transparent and options.background is not None:
+        raise ValueError("give --transparent or --background, not both")
+    if options.out.suffix != ".bvh" and (options.bvh_order != "ZXY" or options.bvh_metres):
+        raise ValueError("--bvh-order and --bvh-metres are for .bvh files")
+
+
 def run(options: Namespace) -> int:
     project = open_for_command(options.project)
     if project.skeleton is None:
         raise ValueError("the project has no clips to draw")
-    if not 1 <= options.fps <= 240:
-        raise ValueError("--fps must be 1 to 240")
-    if not 2 <= options.frames <= 1000:
-        raise ValueError("--frames must be 2 to 1000")
-    if not 0 <= options.start <= 36000:
-        raise ValueError("--start must be 0 to 36000 seconds")
-    if options.out.suffix not in (".png", ".mp4", *MOTION):
-        name = options.out.suffix or options.out.name
-        raise ValueError(
-            "pictures can be written as .png, videos as .mp4, motion as .glb, .usda, .bvh or .npz, not as "
-            f"'{name}'"
-        )
-    if options.out.suffix != ".bvh" and (options.bvh_order != "ZXY" or options.bvh_metres):
-        raise ValueError("--bvh-order and --bvh-metres are for .bvh files")
+    _check_options(options)
     size, folder = read_size(options.size), options.project.resolve().parent
     clip = None
     if options.clip is not None:
@@ -209,14 +257,16 @@ def run(options: Namespace) -> int:
             style = options.bvh_order, options.bvh_metres
             bake_to(out, one, options.seconds, options.fps, one.folder or folder, options.start, style)
     else:
-        from preview.looks import look_of
-
         seen = [
             (load_figure(one.project, one.folder or folder, options.sticks), one) for one in shown.everyone
         ]
-        heard = options.out.suffix == ".mp4"
+        heard = options.out.suffix in VIDEOS
         sound = mix_sound(shown, folder, options.seconds, options.start) if heard else None
-        look = look_of(options.theme, options.light, options.background)
+        if options.background is not None and Path(options.background).suffix:
+            declare_inputs(Path(options.background))
+        look = make_render_look(project, folder, options.theme, options.light, options.background)
+        if options.transparent:
+            look = replace(look, transparent=True)
         direction = _direction(project, options, shown, folder, seen)
         props = load_props(shown, folder)
         shot = Shot(
@@ -341,12 +391,14 @@ def draw_to(
     sound: tuple[np.ndarray, int] | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> None:
-    """Write a contact sheet (.png) or a video (.mp4), with its sound. progress: called with how many pictures
-    of a video are drawn, and of how many.
+    """Write a contact sheet (.png), or a single picture, or a video with its sound. progress: called with how
+    many pictures of a video are drawn, and of how many.
     """
     width, height = shot.size
     out.parent.mkdir(parents=True, exist_ok=True)
-    if out.suffix == ".mp4":
+    clear = not isinstance(shot.look, str) and shot.look.transparent
+    if out.suffix in VIDEOS:
+        from preview.sheet import make_straight_alpha
         from preview.video import write_video
 
         times = shot.start + np.arange(max(1, round(shot.seconds * shot.fps))) / shot.fps
@@ -355,22 +407,30 @@ def draw_to(
         drawn = render_directed(
             seen, times, shot.size, shot.look, shot.direction, into, shot.seat, shot.props
         )
+        if clear:
+            drawn = map(make_straight_alpha, drawn)
         write_video(out, drawn, shot.fps, shot.size, lambda count: progress(count, len(times)), sound=sound)
     elif out.suffix == ".png":
-        from preview.sheet import make_contact_sheet, write_png
+        from preview.sheet import PAPER, make_contact_sheet, make_straight_alpha, write_png
 
-        times = shot.start + np.linspace(0, shot.seconds, max(2, shot.frames))
+        times = shot.start + np.linspace(0, shot.seconds, max(1, shot.frames))
         small = (max(16, width * 2 * min(len(seen), 2) // 9), max(16, height * 5 // 9))
+        small = shot.size if len(times) == 1 else small
         images = list(
             render_directed(seen, times, small, shot.look, shot.direction, None, shot.seat, shot.props)
         )
+        images = [make_straight_alpha(image) for image in images] if clear else images
+        if len(images) == 1:
+            write_png(out, images[0] if clear else images[0][..., :3])
+            return
         labels = [
             f"{t:.2f} s  {', '.join(filter(None, (_doing(shown, t) for _, shown in seen)))}".rstrip()
             for t in times
         ]
-        write_png(out, make_contact_sheet(images, 8 // min(len(seen), 2), labels))
+        paper = None if clear else PAPER
+        write_png(out, make_contact_sheet(images, 8 // min(len(seen), 2), labels, paper=paper))
     else:
-        raise ValueError(f"pictures are written as .png, videos as .mp4, not '{out.suffix}'")
+        raise ValueError(f"pictures are written as .png, videos as .mp4, .mov or .webm, not '{out.suffix}'")
 
 
 def bake_to(

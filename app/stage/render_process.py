@@ -17,10 +17,13 @@ from metagraph.common.programs import make_python_command, start
 from metagraph.formats.project.paths import make_paths_absolute
 from metagraph.formats.store import save_project
 from metagraph.graph.model import Mode, Project
+from preview.video import find_part_path
 
 SUFFIXES = make_lazy_texts(
     lambda: {
         ".mp4": tr("Video with sound"),
+        ".mov": tr("Video with alpha (MOV, ProRes 4444)"),
+        ".webm": tr("Video with alpha (WebM, VP9)"),
         ".png": tr("Contact sheet"),
         ".glb": tr("Motion (GLB)"),
         ".bvh": tr("Motion (BVH)"),
@@ -34,9 +37,10 @@ class RenderOrder:
 
     `performance` is the id of a kept one, None to improvise in `mode`. `conversation` is the id of one,
     then with all its sides. `size` is width and height in pixels. `light` and `background` are names from
-    `preview.looks`. `start` is the second at which it begins. `captions` shows words, `cuts` uses a
-    conversation's camera cuts, and `sticks` draws a stick figure where a character has no mesh. `seat` is one
-    of `preview.looks.SEATS`.
+    `preview.looks`; no background is the project's. `start` is the second at which it begins. `captions`
+    shows words, `cuts` uses a conversation's camera cuts, and `sticks` draws a stick figure where a character
+    has no mesh. `seat` is one of `preview.looks.SEATS`. `transparent` draws nothing behind the
+    character.
     """
 
     out: Path
@@ -47,13 +51,14 @@ class RenderOrder:
     theme: str = "dark"
     conversation: str | None = None
     light: str = "studio"
-    background: str = "stage"
+    background: str | None = None
     start: float = 0.0
     captions: bool = False
     cuts: bool = True
     sticks: bool = False
     mode: Mode = "talking"
     seat: str = "stool"
+    transparent: bool = False
 
 
 def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: WindowJob) -> Path:
@@ -78,8 +83,6 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
             wanted.theme,
             "--light",
             wanted.light,
-            "--background",
-            wanted.background,
             "--seat",
             wanted.seat,
             "--progress",
@@ -87,6 +90,10 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
             f"{wanted.start:.6f}",
             "--captions" if wanted.captions else "--no-captions",
         ]
+        if wanted.transparent:
+            words.append("--transparent")
+        elif wanted.background is not None:
+            words += ["--background", wanted.background]
         if not wanted.cuts:
             words.append("--no-cuts")
         if wanted.sticks:
@@ -114,7 +121,7 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
             if job.cancelled:
                 process.terminate()
                 process.wait()
-                wanted.out.with_name(f".{wanted.out.name}.part.mp4").unlink(missing_ok=True)
+                find_part_path(wanted.out).unlink(missing_ok=True)
                 break
             reader.join(0.1)
         reader.join(5)

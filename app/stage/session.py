@@ -4,6 +4,8 @@ their own, which are connected here.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from PySide6.QtCore import QObject
 
 from app.look.theme_choice import ThemeChoice
@@ -14,8 +16,13 @@ from app.stage.onion import Onion
 from app.stage.selection import Selection
 from app.stage.transport import Transport
 from app.stage.watch import Watch
+from app.translation import tr_error
+from metagraph.errors import FileError
 from metagraph.graph.manual.machine import Manual
 from metagraph.graph.model import LAYERS, Layer, Project
+
+if TYPE_CHECKING:
+    from preview.scene import SceneTheme
 
 OPENED_ON: tuple[Layer, ...] = ("arms", "body", "head")
 
@@ -38,7 +45,25 @@ class StageSession(QObject):
         self.look = ThemeChoice(self)
         self.onion = Onion(self)
         self.watch = Watch(self)
+        self._told = ""  # why the background cannot be drawn
         document.changed.connect(self._follow)
+
+    def make_view_look(self) -> SceneTheme:
+        """Return how the character is lit, and what is behind it: what the project has, else what the user
+        likes.
+        """
+        look, document = self.watch.now.look(self.look.name), self.document
+        if not document.project.backdrop.kind:
+            return look
+        from app.stage.backdrop import set_backdrop
+
+        try:
+            return set_backdrop(look, document.project, document.folder)
+        except FileError as error:
+            if self._told != str(error):
+                self._told = str(error)
+                document.failed.emit(tr_error(error))
+            return look
 
     def set_mode(self, mode: Mode) -> None:
         """Edit and play the meta-graph, or the manual state machine; this clears the selection."""
@@ -113,5 +138,7 @@ class StageSession(QObject):
         self.selection.follow(after)
         self.onstage.follow(before, after)
         self.transport.follow(after)
+        if before.backdrop != after.backdrop or (after.backdrop.kind and before.props is not after.props):
+            self.watch.changed.emit()
         if any(before.graphs[layer].stances is not after.graphs[layer].stances for layer in LAYERS):
             self.place.stance_changed.emit()

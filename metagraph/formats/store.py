@@ -254,6 +254,7 @@ def open_project(path: str | Path, progress: Callable[[int, int], None] | None =
     if names := list_closed_paths(opened.project):
         notes.append(describe_closed_paths(names))
     notes += _describe_missing_props(opened.project, path.resolve().parent)
+    notes += _describe_missing_picture(opened.project, path.resolve().parent)
     return replace(opened, notes=(*notes, *opened.notes), digest=found, newer=newer)
 
 
@@ -267,4 +268,17 @@ def _describe_missing_props(project: Project, folder: Path) -> list[str]:
         )
         for prop in project.props.values()
         if not is_closed(prop.path) and not is_file(folder / prop.path)
+    ]
+
+
+def _describe_missing_picture(project: Project, folder: Path) -> list[str]:
+    """Return a note on the picture behind the character, if its file is not there."""
+    name = project.backdrop.path
+    if project.backdrop.kind != "picture" or is_closed(name) or is_file(folder / name):
+        return []
+    return [
+        phrase(
+            "the background is not drawn: there is no file '{path}'. Put it back, or choose another one",
+            path=name,
+        )
     ]

@@ -12,6 +12,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
+from metagraph.graph.backdrop import Backdrop
 from metagraph.graph.clip_mark import ClipMark
 from metagraph.graph.conversation.model import AUTO, Conversation
 from metagraph.graph.life import Face, Life
@@ -426,7 +427,7 @@ class Project:
     detect it from their words. `manual` has the state machines drawn by hand, by layer. `voices` has the
     analysed sound (`playback.life.voice.Voice`) of each line read so far; it is never saved. `touch` says
     whether contacts hold and hands stay outside the body. `parameters` are the named values that a game sets,
-    in the order in which they are shown.
+    in the order in which they are shown. `backdrop` is what is behind the character.
     """
 
     name: str = "untitled"
@@ -458,6 +459,7 @@ class Project:
     voices: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     touch: Touch = field(default_factory=Touch)
     parameters: Mapping[str, CharacterParameter] = field(default_factory=dict)
+    backdrop: Backdrop = field(default_factory=Backdrop)
 
     def actions(self) -> Iterable[Action]:
         """Yield every action of every layer."""

@@ -153,3 +153,22 @@ def test_sound_is_as_long_as_the_pictures(tmp_path, seconds):
     )
     samples, rate = heard(tmp_path / "a.mp4")
     assert len(samples) / rate == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize(("ending", "decoder"), [(".mov", "prores"), (".webm", "libvpx-vp9")])
+def test_videos_for_editing_and_for_the_web_keep_alpha_and_sound(tmp_path, ending, decoder):
+    import av
+
+    picture = np.zeros((64, 96, 4), np.uint8)
+    picture[:, 48:] = (200, 100, 50, 255)
+    path = tmp_path / f"a{ending}"
+    write_video(path, [picture] * 6, 30, sound=(np.zeros(8820, np.float32), 44100))
+    assert [one.name for one in tmp_path.iterdir()] == [path.name]
+    with av.open(str(path)) as container:
+        assert [stream.type for stream in container.streams] == ["video", "audio"]
+        reader = av.codec.CodecContext.create(decoder, "r")
+        packets = container.demux(container.streams.video[0])
+        found = [f.to_ndarray(format="rgba").astype(int) for p in packets for f in reader.decode(p)]
+    assert len(found) == 6
+    assert found[3][32, 10, 3] < 5 and found[3][32, 80, 3] > 250
+    assert np.abs(found[3][32, 80, :3] - (200, 100, 50)).max() < 16

@@ -230,7 +230,7 @@ class PreviewPanel(QWidget):
 
     def _restyle(self) -> None:
         look = get_theme(self.session.look.name)
-        self.view.theme = self.session.watch.now.look(look.name)
+        self.view.theme = self.session.make_view_look()
         for button, name in (
             (self.start_button, "start"), (self.loop_button, "loop"), (self.frame_button, "frame"),
             (self.face_button, "face"), (self.bones_button, "bones"),

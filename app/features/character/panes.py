@@ -147,7 +147,7 @@ class Panes(QWidget):
         if self._beside is not None:  # a second row would take its gap
             self._grid.addWidget(self._beside, 0, 2, 2 if watch.panes == 4 else 1, 1)
         for pane in self.others:
-            pane.view.theme = watch.look(self.panel.session.look.name)
+            pane.view.theme = self.panel.session.make_view_look()
             pane.name()
             pane.view.update()
         self.panel.view.setMinimumSize(*(LEAST if watch.panes == 1 else (LEAST[0] // 2, LEAST[1] // 2)))

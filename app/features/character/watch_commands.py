@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtGui import QAction, QActionGroup
-from PySide6.QtWidgets import QFileDialog, QMenu
+from PySide6.QtGui import QAction, QActionGroup, QColor
+from PySide6.QtWidgets import QColorDialog, QFileDialog, QMenu
 
 from app.project.jobs import WindowJob
 from app.shell.actions import Command
@@ -17,6 +18,10 @@ from app.shell.context import Shell
 from app.stage.watch import MOST_GHOSTS, SPACINGS, Watch, Watched
 from app.translation import format_number, tr, tr_error, tr_noop
 from metagraph.common.studio import find_start_folder
+from metagraph.errors import FileError
+from metagraph.formats.project.paths import make_path_for_project
+from metagraph.graph.backdrop import Backdrop, BackdropKind
+from metagraph.graph.edit_error import EditError
 
 if TYPE_CHECKING:
     from app.features.character.reference import Reference
@@ -30,6 +35,13 @@ SHOWN = (
     ("meshes", "sticks"),
 )
 SEAT_WORDS = {"stool": tr_noop("Stool"), "chair": tr_noop("Chair"), "none": tr_noop("None")}
+BACKDROP_WORDS: dict[BackdropKind, str] = {
+    "studio": tr_noop("Studio, the floor turns into the wall"),
+    "room": tr_noop("Room"),
+    "color": tr_noop("Plain colour…"),
+    "picture": tr_noop("Picture…"),
+}
+PICTURES = tr_noop("Pictures (*.png *.jpg *.jpeg *.webp)")
 GHOSTS = 2  # before and after, where onion skin is turned on by its key
 AHEAD = 120.0  # seconds that are searched for a slide
 VIEW = "&View"
@@ -290,14 +302,67 @@ def fill_choice(shell: Shell, menu: QMenu, name: str) -> None:
 
     choices: Iterable[str] = {"light": LIGHTS, "background": BACKDROPS, "seat": SEATS}[name]
     watch, group = shell.stage.session.watch, QActionGroup(menu)
+    kept = shell.document.project.backdrop.kind if name == "background" else ""
+
+    def choose(choice: str) -> None:
+        if kept:
+            set_project_backdrop(shell, Backdrop())
+        watch.set(**{name: choice})
+
     for choice in choices:
         action = QAction(
             tr(SEAT_WORDS[choice] if name == "seat" else look_name(choice)), menu, checkable=True
         )
-        action.setChecked(getattr(watch.now, name) == choice)
-        action.triggered.connect(lambda _=False, c=choice: watch.set(**{name: c}))
+        action.setChecked(getattr(watch.now, name) == choice and not kept)
+        action.triggered.connect(lambda _=False, c=choice: choose(c))
         group.addAction(action)
         menu.addAction(action)
+    if name == "background":
+        menu.addSection(tr("Saved with the project"))
+        for kind, words in BACKDROP_WORDS.items():
+            action = QAction(tr(words), menu, checkable=True)
+            action.setChecked(kind == kept)
+            action.triggered.connect(lambda _=False, k=kind: choose_project_backdrop(shell, k))
+            group.addAction(action)
+            menu.addAction(action)
+
+
+def choose_project_backdrop(shell: Shell, kind: BackdropKind) -> None:
+    """Put something behind the project's character; ask which colour or picture."""
+    from app.stage.backdrop import read_back_picture
+
+    document = shell.document
+    before = document.project.backdrop
+    if kind == "color":
+        color = QColorDialog.getColor(QColor(*before.color), shell.widget, tr("Colour of the background"))
+        if color.isValid():
+            set_project_backdrop(
+                shell, Backdrop(kind="color", color=(color.red(), color.green(), color.blue()))
+            )
+    elif kind == "picture":
+        folder = find_start_folder(document.folder)
+        name, _ = QFileDialog.getOpenFileName(
+            shell.widget, tr("Choose a background picture"), str(folder), tr(PICTURES)
+        )
+        if not name:
+            return
+        try:
+            read_back_picture(Path(name))
+            path = make_path_for_project(Path(name), document.folder)
+        except FileError as error:
+            document.failed.emit(tr_error(error))
+            return
+        set_project_backdrop(shell, Backdrop(kind="picture", path=path))
+    else:
+        set_project_backdrop(shell, Backdrop(kind=kind))
+
+
+def set_project_backdrop(shell: Shell, backdrop: Backdrop) -> None:
+    """Put something behind the project's character, as a step that can be undone."""
+    try:
+        shell.document.edit(tr("Change the background"), lambda project: replace(project, backdrop=backdrop))
+    except EditError as error:
+        shell.document.failed.emit(tr_error(error))
 
 
 def fill_onion(shell: Shell, menu: QMenu) -> None:

@@ -48,6 +48,8 @@ LOOKS = (  # what the preview calls its lights and backgrounds
     tr_noop("Black"),
     tr_noop("Green, for keying"),
 )
+TRANSPARENT = "transparent"  # instead of a background
+VIDEOS = (".mp4", ".mov", ".webm")
 SIZES = ((640, 360), (960, 540), (1280, 720), (1920, 1080))
 
 
@@ -139,6 +141,11 @@ class RenderDialog(QDialog):
             for name in choices:
                 box.addItem(tr(look_name(name)), name)
             box.setCurrentIndex(box.findData(now))
+        self.background.addItem(tr("Transparent"), TRANSPARENT)
+        if self.performance.document.project.backdrop.kind:
+            self.background.insertItem(0, tr("The project's"), None)
+            self.background.setCurrentIndex(0)
+        self._opaque = self.background.currentIndex()  # what is chosen where nothing can be transparent
         self.form.addRow(tr("Light"), self.light)
         self.form.addRow(tr("Background"), self.background)
         self.captions = QCheckBox(tr("Show the spoken words at the bottom of the picture"), self)
@@ -175,7 +182,8 @@ class RenderDialog(QDialog):
         """Show what belongs to the chosen kind of file."""
         suffix = self.kind.currentData()
         self.file.setText(str(Path(self.file.text()).with_suffix(suffix)))
-        drawn = suffix in (".mp4", ".png")
+        drawn = suffix in (*VIDEOS, ".png")
+        self._offer_transparency(suffix)
         for row in (self.size_box, self.light, self.background):
             self.form.setRowVisible(row, drawn)
         self.form.setRowVisible(self.part, self.range is not None)
@@ -185,10 +193,23 @@ class RenderDialog(QDialog):
         self.form.setRowVisible(self.cuts, drawn and bool(self.performance.timeline.now.cuts))
         self.words.setText({
             ".mp4": tr("H.264 video with the sound of the lines."),
+            ".mov": tr("For editing programs: large, with the sound of the lines."),
+            ".webm": tr("For web pages: small, with the sound of the lines."),
             ".png": tr("24 pictures of the performance on one sheet."),
             ".glb": tr("The motion of every joint, with the character mesh, for any 3D program."),
             ".bvh": tr("The motion of every joint, without a mesh."),
         }[suffix])  # fmt: skip
+
+    def _offer_transparency(self, suffix: str) -> None:
+        """Choose a transparent background with files that are for that; MP4 has none."""
+        place = self.background.findData(TRANSPARENT)
+        held = self.background.currentData() == TRANSPARENT
+        self.background.setItemData(place, suffix != ".mp4", Qt.ItemDataRole.UserRole - 1)
+        if suffix in (".mov", ".webm") and not held:
+            self._opaque = self.background.currentIndex()
+            self.background.setCurrentIndex(place)
+        elif suffix == ".mp4" and held:
+            self.background.setCurrentIndex(self._opaque)
 
     def _browse(self) -> None:
         suffix = self.kind.currentData()
@@ -200,6 +221,7 @@ class RenderDialog(QDialog):
 
     def _write(self) -> None:
         document = self.performance.document
+        clear = self.background.currentData() == TRANSPARENT
         start, end = self.part.currentData() or (0.0, self.seconds.value())
         wanted = RenderOrder(
             Path(self.file.text()),
@@ -210,13 +232,14 @@ class RenderDialog(QDialog):
             self.session.look.name,
             self.performance.conversation,
             self.light.currentData(),
-            self.background.currentData(),
+            None if clear else self.background.currentData(),
             start,
             self.captions.isChecked(),
             self.cuts.isChecked(),
             self.session.watch.now.sticks,
             self.session.onstage.improvised,
             self.session.watch.now.seat,
+            clear,
         )
         QSettings().setValue("render/size", self.size_box.currentIndex())
         project, folder = document.project, document.folder or Path()

@@ -39,6 +39,7 @@ from metagraph.formats.project.fields import (
 from metagraph.formats.project.manual_data import decode_manual, make_manual_data
 from metagraph.formats.project.text import as_text
 from metagraph.formats.takes import REPAIRS
+from metagraph.graph.backdrop import Backdrop
 from metagraph.graph.clip_mark import ClipMark
 from metagraph.graph.conversation.model import AUTO, Conversation, Segment, Side, Word
 from metagraph.graph.model import (
@@ -203,6 +204,7 @@ STRUCTS: dict[str, Any] = {
     "joint_maps": dict[str, JointMap],
     "touch": Touch,
     "parameters": dict[str, CharacterParameter],
+    "backdrop": Backdrop,
 }
 
 
@@ -259,9 +261,11 @@ def _closed(name: str | None) -> str | None:
 
 
 def _with_closed_paths(value: Any) -> Any:
-    """Return lines, props and conversations without paths that are not to be opened; anything else as it
-    is.
+    """Return lines, props, conversations and a backdrop without paths that are not to be opened; anything
+    else as it is.
     """
+    if isinstance(value, Backdrop):
+        return msgspec.structs.replace(value, path=_closed(value.path) or "")
     if not isinstance(value, Mapping):
         return value
     return {k: _with_closed(v) if isinstance(v, Line | Prop | Conversation) else v for k, v in value.items()}

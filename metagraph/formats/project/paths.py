@@ -25,6 +25,7 @@ from metagraph.common.network_paths import (
 )
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError, clean_text
+from metagraph.graph.backdrop import Backdrop
 from metagraph.graph.conversation.model import Conversation, Side
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.graph.prop import Prop
@@ -63,6 +64,7 @@ def move_projects(projects: Sequence[Project], old: Path | None, new: Path) -> l
             character=renew(project.character) if project.character else None,
             lines=once(project.lines, lambda _: _lines(project, renew)),
             props=once(project.props, lambda _: _props(project, renew)),
+            backdrop=_backdrop(project, renew),
             conversations=once(project.conversations, lambda _: _conversations(project, renew)),
         )
 
@@ -100,13 +102,14 @@ def _each_path(project: Project, renew: Callable[[str], str]) -> Project:
         character=character,
         lines=_lines(project, renew),
         props=_props(project, renew),
+        backdrop=_backdrop(project, renew),
         conversations=_conversations(project, renew),
     )
 
 
 def list_project_files(project: Project, folder: Path) -> tuple[Path, ...]:
-    """Return every file that a project in a folder names: clips, the character, props, sounds,
-    other projects.
+    """Return every file that a project in a folder names: clips, the character, props, a picture,
+    sounds, other projects.
     """
     found: dict[Path, None] = {}
 
@@ -145,6 +148,12 @@ def _lines(project: Project, renew: Callable[[str], str]) -> Mapping[str, Line]:
 def _props(project: Project, renew: Callable[[str], str]) -> Mapping[str, Prop]:
     """Return the project's props with renewed paths."""
     return {i: msgspec.structs.replace(x, path=renew(x.path)) for i, x in project.props.items()}
+
+
+def _backdrop(project: Project, renew: Callable[[str], str]) -> Backdrop:
+    """Return the project's backdrop with a renewed path."""
+    found = project.backdrop
+    return msgspec.structs.replace(found, path=renew(found.path)) if found.path else found
 
 
 def make_paths_absolute(project: Project, folder: Path) -> Project:

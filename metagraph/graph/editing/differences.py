@@ -40,6 +40,7 @@ _REST = {
     "language": phrase("Language"),
     "life": phrase("Life"),
     "face": phrase("Face"),
+    "backdrop": phrase("Background"),
     "tiers": phrase("Tiers"),
     "labels": phrase("Labels"),
     "notes": phrase("Notes"),

@@ -221,6 +221,37 @@ def test_light_and_background_are_chosen_for_the_view_and_offered_for_rendering(
     dialog.close()
 
 
+def test_a_background_of_the_project_is_chosen_saved_undone_and_offered_for_rendering(shown, monkeypatch):
+    from PySide6.QtGui import QColor
+    from PySide6.QtWidgets import QColorDialog
+
+    from app.features.render.render_dialog import RenderDialog
+
+    def choose(words: str) -> None:
+        menu = shown.shell.actions["background"].menu()
+        menu.aboutToShow.emit()
+        next(a for a in menu.actions() if words in a.text()).trigger()
+
+    document, view = shown.document, shown.preview.view
+    choose("Room")
+    assert document.project.backdrop.kind == "room" and view.theme.walls is not None
+    dialog = RenderDialog(shown.performance, shown.session, shown.jobs)
+    assert dialog.background.currentText() == "The project's" and dialog.background.currentData() is None
+    for suffix, shows in ((".mov", "Transparent"), (".mp4", "The project's"), (".webm", "Transparent")):
+        dialog.kind.setCurrentIndex(dialog.kind.findData(suffix))
+        dialog.kind.activated.emit(dialog.kind.currentIndex())
+        assert dialog.background.currentText() == shows and dialog.file.text().endswith(suffix)
+    dialog.close()
+    monkeypatch.setattr(QColorDialog, "getColor", lambda *_: QColor("#336699"))
+    choose("Plain colour")
+    assert document.project.backdrop.color == (0x33, 0x66, 0x99) and view.theme.walls is None
+    assert tuple(round(255 * x) for x in view.theme.top) == (0x33, 0x66, 0x99)
+    document.undo()
+    assert document.project.backdrop.kind == "room" and view.theme.walls is not None
+    choose("White")  # one of the user's own takes its place
+    assert document.project.backdrop.kind == "" and view.theme.top == (1, 1, 1)
+
+
 def test_the_seat_is_chosen_and_kept_and_drawn(drive):
     from app.project.files import SEATED
     from preview.furniture import Chair
