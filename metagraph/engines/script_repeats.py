@@ -51,10 +51,14 @@ def list_repeat_cases(project: Project) -> Iterator[ScriptCase]:
                 ask("next", "action", 12.9, action=others[0].id),
                 ask("r3", "action", 18.0, action=one.id, duration=4.0),
                 ask("stroke", "action", action=others[0].id, stroke=20.5, late=0.1),
+                ask("slow", "action", 24.0, action=one.id, duration=6.0, mood=[-0.8, -0.8]),
+                ask("cut2", "action", 25.4, action=others[0].id, priority=3),
+                ask("fast", "action", 31.0, action=one.id, duration=6.0, mood="excited"),
+                ask("cut3", "action", 31.9, action=others[0].id, priority=3),
             ]
             yield make_case(
                 f"{layer}: {one.id} is left",
                 "after its first cycle it may be left; what was cut goes on for what is left of its time",
                 asks,
-                28.0,
+                38.0,
             )

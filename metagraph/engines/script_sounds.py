@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import pi, sin
 from typing import Any
 
@@ -27,16 +27,22 @@ _SAID: tuple[tuple[float, tuple[tuple[float, float], ...]], ...] = (
 )
 
 
-def list_streams() -> list[tuple[int, list[list[int]]]]:
-    """Return sounds: samples a second, and pieces of 8-bit samples as they come in, some of them empty."""
-    out = []
-    for rate, parts, lengths in ((8000, 4, (700, 0, 37)), (12000, len(_SAID), (4800, 1, 2400))):
+def list_streams() -> list[dict[str, Any]]:
+    """Return sounds: `rate`, samples a second; `pieces` of 8-bit samples as they come in, some of them empty;
+    `said`, the seconds of the line that are over when each comes, one of them too late; and what is heard.
+    """
+    out: list[dict[str, Any]] = []
+    for rate, parts, lengths, over in (
+        (8000, 4, (700, 0, 37), (0.0, 0.3375, 0.3376, 0.0)),
+        (12000, len(_SAID), (4800, 1, 2400), (0.0, 0.5, 1.0, 1.4)),
+    ):
         samples = _samples(rate, _SAID[:parts])
         pieces, at = [], 0
         for length in (*lengths, len(samples)):
             pieces.append(samples[at : at + length])
             at += length
-        out.append((rate, pieces))
+        sound = {"rate": rate, "pieces": pieces, "said": list(over)}
+        out.append({**sound, **find_heard(sound)})
     return out
 
 
@@ -49,10 +55,14 @@ def _samples(rate: int, said: Sequence[tuple[float, tuple[tuple[float, float], .
     return out
 
 
-def list_heard_marks(rate: int, pieces: Sequence[Sequence[int]]) -> list[list[list[Any]]]:
-    """Return for each piece the marks it brings: seconds, viseme, weight."""
-    voice = StreamedVoice(float(rate))
-    return [
-        [[mark.at, mark.viseme, mark.weight] for mark in voice.hear([x / FULL for x in piece])]
-        for piece in pieces
-    ]
+def find_heard(sound: Mapping[str, Any]) -> dict[str, Any]:
+    """Return for each piece of a sound the `marks` it brings (seconds, viseme, weight), and how many
+    `seconds` were heard then.
+    """
+    voice = StreamedVoice(float(sound["rate"]))
+    marks, seconds = [], []
+    for piece, said in zip(sound["pieces"], sound["said"], strict=True):
+        voice.follow(said)
+        marks.append([[m.at, m.viseme, m.weight] for m in voice.hear([x / FULL for x in piece])])
+        seconds.append(voice.seconds)
+    return {"marks": marks, "seconds": seconds}

@@ -21,6 +21,11 @@ TEXTS: tuple[tuple[str, str, float | None, bool], ...] = (
     ("de", "Grüß Gott, ÄPFEL schmecken großartig! Ich weiß nicht, ob es stimmt. Oder?", None, False),
     ("fr", "Bonjour ! Peut-être qu’il ne vient pas, ÉTÉ comme hiver. C’est énorme.", None, False),
     ("es", "¡Hola! ¿Cómo está usted? No sé; tal vez mañana, señor ÑANDÚ.", 6.25, False),
+    ("en", "We walked along the river with some bread", None, False),
+    ("en", "Then the others came along the river and we went home together that evening", None, False),
+    ("en", "She left the keys under a large green pot near the door of the house", None, False),
+    ("en", "First one line\nthen the “second”. (It ends.)\n\nThird 3.5", None, False),
+    ("en", "ぁ a ヿ b ｦ c ﾝ d 㐀 e 豈 f 𠀀 g 가 h 힣 i ﾞa j. ぁぁヿヿ ｦｦﾝﾝ 가힣", None, False),
     ("en", "", None, False),
     ("en", "日本語です。はい！ no、 …?!", None, False),
 )

@@ -25,6 +25,7 @@ from sample_clips.make.conformance_projects import (
     still,
     touching,
     varied,
+    with_parameters,
 )
 from sample_clips.make.randomised_projects import randomised
 
@@ -101,7 +102,16 @@ def without_version(path: Path) -> None:
 def main() -> None:
     touched = touching(randomised(1)), touching(randomised(2, BOTH_EYES))
     footed = standing(), stepping(), stepping("arms")
-    for project in (stick(), varied(), sparse(), *footed, repeating(), repeating(True), *touched, *still()):
+    for project in (
+        with_parameters(stick()),
+        varied(),
+        sparse(),
+        *footed,
+        repeating(),
+        repeating(True),
+        *touched,
+        *still(),
+    ):
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
         made = write_project_files(
