@@ -361,13 +361,13 @@ def find_case_differences(project: Project, case: Mapping[str, Any]) -> list[str
     """Return in words how what this library makes of a case differs from what the case expects."""
     steps = tuple(ScriptStep(s["now"], s["end"], tuple(s["asks"]), s["forget"]) for s in case["steps"])
     watched = [row["now"] for row in case.get("watched", ())][len(steps) :]
-    watch = CaseWatch()
+    watch = CaseWatch() if "watched" in case else None
     script = ScriptCase(
         case["name"], "", steps, case["seed"], case["idle"], case["stances"], watched=tuple(watched)
     )
     plan = play_case(project, script, watch)
     out = [
-        *(_unlike(watch.rows, case["watched"], "watched") if "watched" in case else ()),
+        *(_unlike(watch.rows, case["watched"], "watched") if watch is not None else ()),
         *_unlike(plan_data(plan), case["plan"], "plan"),
         *_unlike(make_life_data(plan), case["life"], "life"),
     ]

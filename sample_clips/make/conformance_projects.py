@@ -679,6 +679,11 @@ def stepping(layer: Layer = "body") -> Project:
     b.act(layer, "gesture", stand, own)
     some = m.clip("some joints", 36, 1.6, m.stance(25, LEGS, 0.1), None, sway, 0.2)
     b.act(layer, "gesture", stand, some, joints=("Spine", "LeftUpperLeg"))
+    for n, more in enumerate(({"joints": ("LeftUpperLeg",)}, {"joint_weights": (("LeftUpperLeg", 0.5),)})):
+        one = m.clip(f"one joint {n}", 38 + n, 1.5, m.stance(27 + n, LEGS, 0.1), None, sway, 0.2)
+        b.act(layer, "gesture", stand, one, **more)
+    nearest = m.clip("nearest", 46, 1.5, m.stance(29, LEGS, 0.006), None, sway, 0.1)
+    b.act(layer, "gesture", stand, nearest)
     sudden = m.clip("sudden", 37, 1.2, m.stance(26, LEGS, 0.08), None, sway, 0.2)
     b.act(layer, "fidget", stand, sudden, timing={"blend_in": 0.0, "blend_out": 0.0})
     if layer != "body":

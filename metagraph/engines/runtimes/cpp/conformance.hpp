@@ -192,19 +192,19 @@ struct Watch {
 };
 
 /// Return the plan that a case's steps make. watch: what looks on, where the case wants that.
-inline Ref<const Plan> planned(const Graph& graph, const Json& one, Watch& watch) {
-    const Json* watched = one.find("watched");
+inline Ref<const Plan> planned(const Graph& graph, const Json& one, Watch* watch = nullptr) {
+    const Json* watched = watch == nullptr ? nullptr : one.find("watched");
     PlanOptions options;
     options.idle = one.find("idle")->flag;
     for (const auto& [layer, stance] : one.find("stances")->fields) options.stances[layer] = stance.text;
     Ref<const Plan> plan = lang::made<Plan>(static_cast<std::uint32_t>(one.find("seed")->number));
     for (const Json& step : one.find("steps")->items) {
         plan = hear(graph, *plan, step.find("now")->number, step.find("asks")->items, step.find("end")->number, options);
-        if (watched != nullptr) watch.look(*plan, step.find("now")->number, step.find("asks")->items);
+        if (watched != nullptr) watch->look(*plan, step.find("now")->number, step.find("asks")->items);
         if (!step.find("forget")->empty()) plan = since(*plan, step.find("forget")->number);
     }
     for (std::size_t n = one.find("steps")->items.size(); watched != nullptr && n < watched->items.size(); n++) {
-        watch.look(*plan, watched->items[n].find("now")->number, {});
+        watch->look(*plan, watched->items[n].find("now")->number, {});
     }
     return plan;
 }
@@ -212,7 +212,7 @@ inline Ref<const Plan> planned(const Graph& graph, const Json& one, Watch& watch
 template <class Tell>
 void run_case(const Ref<const Graph>& graph, const Json& one, const Json& tolerance, Tell tell) {
     Watch watch;
-    const Ref<const Plan> plan = planned(*graph, one, watch);
+    const Ref<const Plan> plan = planned(*graph, one, &watch);
     const double seconds = tolerance.find("seconds")->number;
     auto same = [&](const std::string& where, const Json& found, const Json& wanted) {
         const std::string told = difference(found, wanted, seconds, where);
