@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from metagraph.engines.script_parts import ScriptCase, ask, list_some_actions, make_case
+from metagraph.engines.script_parts import ScriptCase, ScriptStep, ask, list_some_actions, make_case
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.repeating import cycle_of
 
@@ -51,14 +51,25 @@ def list_repeat_cases(project: Project) -> Iterator[ScriptCase]:
                 ask("next", "action", 12.9, action=others[0].id),
                 ask("r3", "action", 18.0, action=one.id, duration=4.0),
                 ask("stroke", "action", action=others[0].id, stroke=20.5, late=0.1),
-                ask("slow", "action", 24.0, action=one.id, duration=6.0, mood=[-0.8, -0.8]),
-                ask("cut2", "action", 25.4, action=others[0].id, priority=3),
-                ask("fast", "action", 31.0, action=one.id, duration=6.0, mood="excited"),
-                ask("cut3", "action", 31.9, action=others[0].id, priority=3),
             ]
             yield make_case(
                 f"{layer}: {one.id} is left",
                 "after its first cycle it may be left; what was cut goes on for what is left of its time",
                 asks,
-                38.0,
+                28.0,
+            )
+            steps = [
+                ScriptStep(0.0, 12.0, (ask("r", "action", 1.0, action=one.id, duration=6.0, mood="excited"),))
+            ]
+            steps += [ScriptStep(1.6, 12.0, (ask("now", "action", action=others[0].id, priority=3),))]
+            steps += [
+                ScriptStep(
+                    8.0, 24.0, (ask("s", "action", 9.0, action=one.id, duration=6.0, mood=[-0.8, -0.8]),)
+                )
+            ]
+            steps += [ScriptStep(9.6, 24.0, (ask("then", "action", action=others[0].id, priority=3),))]
+            yield ScriptCase(
+                f"{layer}: {one.id} is left while it plays",
+                "sooner in a quick mood than in a slow one",
+                tuple(steps),
             )

@@ -32,11 +32,13 @@ def list_streams() -> list[dict[str, Any]]:
     `said`, the seconds of the line that are over when each comes, one of them too late; and what is heard.
     """
     out: list[dict[str, Any]] = []
-    for rate, parts, lengths, over in (
-        (8000, 4, (700, 0, 37), (0.0, 0.3375, 0.3376, 0.0)),
-        (12000, len(_SAID), (4800, 1, 2400), (0.0, 0.5, 1.0, 1.4)),
+    for rate, said, lengths, over in (
+        (8000, _SAID[:4], (700, 0, 37), (0.0, 0.3375, 0.3376, 0.0)),
+        (12000, _SAID, (4800, 1, 2400), (0.0, 0.5, 1.0, 1.4)),
+        (8000, _list_shades(), (4000,), (0.0, 0.0)),
+        (12000, _list_hisses(), (), (0.0,)),
     ):
-        samples = _samples(rate, _SAID[:parts])
+        samples = _samples(rate, said)
         pieces, at = [], 0
         for length in (*lengths, len(samples)):
             pieces.append(samples[at : at + length])
@@ -52,6 +54,28 @@ def _samples(rate: int, said: Sequence[tuple[float, tuple[tuple[float, float], .
         for n in range(round(seconds * rate)):
             made = sum(loud * sin(2 * pi * hertz * n / rate) for hertz, loud in tones)
             out.append(max(-128, min(127, round(made * FULL))))
+    return out
+
+
+Shades = list[tuple[float, tuple[tuple[float, float], ...]]]
+
+
+def _list_shades() -> Shades:
+    """Return shapes that go over into each other, and into silence, a part of a decibel at a time."""
+    out: Shades = [(0.04, ())]
+    for first, step in ((0.44, 0.98), (0.24, 0.97)):
+        out += [(0.04, ((300.0, 0.5), (800.0, first * step**n))) for n in range(14)]
+    out += [(0.04, ((300.0, 0.4), (800.0, 0.25), (2200.0, 0.16 * 0.95**n))) for n in range(12)]
+    out += [(0.04, ((300.0, 0.5), (2200.0, 0.09 * 0.93**n))) for n in range(12)]
+    out += [(0.04, ((800.0, 0.07 * 0.92**n),)) for n in range(12)]
+    return out
+
+
+def _list_hisses() -> Shades:
+    """Return hisses that get softer: beside a voice, and by themselves."""
+    out: Shades = [(0.05, ((300.0, 0.6),))]
+    out += [(0.04, ((2200.0, 0.03), (4700.0, 0.1 * 0.93**n))) for n in range(10)]
+    out += [(0.04, ((4700.0, 0.03 * 0.9**n),)) for n in range(8)]
     return out
 
 

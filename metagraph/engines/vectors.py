@@ -90,9 +90,9 @@ def list_cases(project: Project) -> Iterator[ScriptCase]:
     yield from list_boundary_cases(project)
 
 
-def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None) -> Path:
+def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None, common: bool = True) -> Path:
     """Write the vectors of an export beside its JSON; return the file. chosen: the cases, all that suit it
-    when None.
+    when None. common: also what is the same for every character: sounds, texts, others' moods.
 
     Raises FileError when the export cannot be read or the file cannot be written.
     """
@@ -104,9 +104,11 @@ def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None) -> P
         "tolerance": {"metres": METRES, "degrees": DEGREES, "seconds": SECONDS, "weight": WEIGHT},
         "hashes": [[seed, list(words), key32(seed, *words)] for seed, words in HASHES],
         "described": list_offered_requests(project),
-        "heard": list_streams(),
-        "talked": list_talks(),
-        "sympathies": list_sympathies(),
+        **(
+            {"heard": list_streams(), "talked": list_talks(), "sympathies": list_sympathies()}
+            if common
+            else {}
+        ),
         "settings": list_settings(project),
     }
     lines = ",\n".join(json.dumps(case, ensure_ascii=False, separators=(",", ":")) for case in found)

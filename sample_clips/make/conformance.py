@@ -131,7 +131,7 @@ def main() -> None:
             chosen = [*list_repeat_cases(project), *(c for c in list_cases(project) if c.name == "chatter 1")]
         if project.name == "clasping":
             chosen = [case for case in list_repeat_cases(project) if case.name.startswith("arms")]
-        path = write_vectors(made.json, chosen)
+        path = write_vectors(made.json, chosen, common=project.name == "stick")
         print(
             f"{path.parent.name}: {path.stat().st_size / 1e3:.0f} kB of vectors, "
             f"{made.glb.stat().st_size / 1e3:.0f} kB of clips"
