@@ -11,6 +11,7 @@ from metagraph.playback.planning.mood import Mood, MoodFrom, Moods
 
 # Start, valence, arousal, end: pleasant, unpleasant and excited, unpleasant and calm, too short, neutral.
 _MOODS = (
+    (0.0, 0.25, 0.125, 2.0),
     (3.0, 0.75, 0.125, 9.5),
     (9.5, 0.0, 0.5, 11.0),
     (12.0, -0.125, 0.75, 20.0),
@@ -24,7 +25,7 @@ _OWN = ((15.0, 0.5, 0.0, 18.0), (31.0, 0.95, 0.6, 39.0))
 _LAUGHS = tuple((2.0 * n, 2.0 * n + 0.5 + 0.25 * n) for n in range(20))
 
 
-def list_sympathies() -> list[dict[str, Any]]:
+def list_taken_moods() -> list[dict[str, Any]]:
     """Return moods and laughs with what is taken up of them, as plain data. base: the own mood where no other
     holds.
     """

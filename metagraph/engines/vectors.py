@@ -24,7 +24,7 @@ from metagraph.engines.script_boundaries import list_boundary_cases
 from metagraph.engines.script_parameters import list_settings, run_settings
 from metagraph.engines.script_parts import ScriptCase, ScriptStep
 from metagraph.engines.script_sounds import find_heard, list_streams
-from metagraph.engines.script_sympathy import find_sympathies, list_sympathies
+from metagraph.engines.script_sympathy import find_sympathies, list_taken_moods
 from metagraph.engines.script_talk import analyse_talk, list_talks
 from metagraph.engines.watched_case import CaseWatch
 from metagraph.errors import FileError
@@ -105,7 +105,7 @@ def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None, comm
         "hashes": [[seed, list(words), key32(seed, *words)] for seed, words in HASHES],
         "described": list_offered_requests(project),
         **(
-            {"heard": list_streams(), "talked": list_talks(), "sympathies": list_sympathies()}
+            {"heard": list_streams(), "talked": list_talks(), "sympathies": list_taken_moods()}
             if common
             else {}
         ),

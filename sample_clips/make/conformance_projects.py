@@ -110,11 +110,12 @@ def stick_skeleton(more: tuple[str, ...] = (), legs: bool = False, rooted: bool 
             local_r[n] = rotation.multiply(back, turns[n])
             local_t[n] = rotation.rotate_vectors(back, positions[n] - positions[up])
     if rooted:
+        turn = rotation.exp(np.array([[0.2, -0.4, 0.1]]))
+        back = rotation.conjugate(turn[0])
+        local_r[0] = rotation.multiply(back, local_r[0])
+        local_t[0] = rotation.rotate_vectors(back, local_t[0])
         names, parents = ["Root", *names], [-1, *(up + 1 for up in parents)]
-        local_r, local_t = (
-            np.vstack([[[0.0, 0.0, 0.0, 1.0]], local_r]),
-            np.vstack([np.zeros((1, 3)), local_t]),
-        )
+        local_r, local_t = np.vstack([turn, local_r]), np.vstack([np.zeros((1, 3)), local_t])
     return Skeleton(tuple(names), np.array(parents), local_r, local_t)
 
 
@@ -246,9 +247,9 @@ def stick(
 ) -> Project:
     """Return a project of three layers, chains of stances, several loops, masks, exits, phases and lines.
 
-    size: of the stances' turns, times the usual ones. legs: whether it has any.
+    size: of the stances' turns, times the usual ones. legs: whether it has any, and a joint above the hips.
     """
-    b = Builder(name, morphs, size, legs)
+    b = Builder(name, morphs, size, legs, rooted=legs)
     m = b.moves
     stand, lean, sway = m.stance(1, TRUNK, 0.08), m.stance(2, TRUNK, 0.2), ("Hips", "Spine")
     s_stand = b.stance(
@@ -481,8 +482,10 @@ def touching(project: Project) -> Project:
             times = np.linspace(start, end, 1 + n % 3)
             keys = tuple(_near(project, action, hand, to, float(t), chance) for t in times)
             part = (end - start) * (0.0, 0.2, 0.3)[n % 3]
-            first, last = start + part, end - part / 2
-            spans.append(ContactSpan(hand, "palm", to, first, last, keys, 0.2, 0.1 * (n % 2)))
+            first, last, ease_out = start + part, end - part / 2, 0.1 * (n % 2)
+            if n % 6 == 5:  # over before it has settled
+                first, last, ease_out, keys = start, start + 0.15, 0.05, keys[:1]
+            spans.append(ContactSpan(hand, "palm", to, first, last, keys, 0.2, ease_out))
         changes[action.id] = {"contacts": tuple(spans)}
     return replace(edits.update_each(project, changes), touch=Touch(True, True))
 
