@@ -69,6 +69,8 @@ def _alone(project: Project) -> Iterator[ScriptCase]:
     yield _once(
         "the models with another seed", "every draw is another one", [], 30.0, idle=True, seed=0xFFFFFFFF
     )
+    about = "what is likelier the longer ago it was, and how long stances last at least"
+    yield _once("eight minutes", about, [], 480.0, idle=True, seed=5, alive=())
     yield _once("no time at all", "a plan of 0 seconds", [], 0.0, idle=True)
     for layer in LAYERS:
         for stance in list(project.graphs[layer].stances)[1:3]:

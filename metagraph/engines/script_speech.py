@@ -66,7 +66,7 @@ class _Talk:
     def __init__(self, chance: Random, lines: list[str]) -> None:
         self.chance = chance
         self.lines = lines
-        self.told: dict[str, int] = {}  # words or shapes of each line that were told
+        self.told: dict[str, int] = {}  # words or shapes of each line that were reported
         self.count = 0
 
     def draw(self, now: float, first: bool) -> Ask:
@@ -125,7 +125,7 @@ class _Talk:
         return found
 
     def _range(self, ident: str) -> tuple[int, int]:
-        """Return which words or shapes are told: the next, all from the first, or some again."""
+        """Return which words or shapes are reported: the next, all from the first, or some again."""
         told = self.told.get(ident, 0)
         first = self.chance.choice((told, told, told, 0, max(0, told - 1), told + 2))
         end = min(len(_WORDS), first + self.chance.choice((1, 2, 4)))

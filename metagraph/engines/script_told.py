@@ -1,5 +1,5 @@
-"""Scripts of conformance for what is told of a line, or of a place, once more and otherwise: pieces that come
-behind its end, too late or twice, what cannot be read, and what is forgotten.
+"""Scripts of conformance for lines and places that are reported once more and otherwise: pieces that come
+behind a line's end, too late or twice, what cannot be read, and what is forgotten.
 """
 
 from __future__ import annotations
@@ -149,7 +149,7 @@ def _letters() -> ScriptCase:
 
 
 def _anew() -> ScriptCase:
-    """Return a case of something said anew in the step in which it is taken back, and of what goes on."""
+    """Return a case of something said again in the step in which it is taken back, and of what goes on."""
     mood = {"mood": "happy"}
     steps = (
         ScriptStep(
@@ -239,7 +239,7 @@ def _kept(project: Project) -> ScriptCase:
 
 def _called(project: Project) -> ScriptCase:
     """Return a case of actions asked for by name: of two with one name the likelier plays, in the layer that
-    is told.
+    is given.
     """
     asks: list[Ask] = []
     for layer in LAYERS:
