@@ -243,13 +243,18 @@ class Builder:
 
 @numbered_ids()
 def stick(
-    name: str = "stick", morphs: tuple[str, ...] = (), size: float = 1.0, legs: bool = False
+    name: str = "stick",
+    morphs: tuple[str, ...] = (),
+    size: float = 1.0,
+    legs: bool = False,
+    rooted: bool = False,
 ) -> Project:
     """Return a project of three layers, chains of stances, several loops, masks, exits, phases and lines.
 
-    size: of the stances' turns, times the usual ones. legs: whether it has any, and a joint above the hips.
+    size: of the stances' turns, times the usual ones. legs, rooted: whether it has any, and a joint above the
+    hips.
     """
-    b = Builder(name, morphs, size, legs, rooted=legs)
+    b = Builder(name, morphs, size, legs, rooted=rooted)
     m = b.moves
     stand, lean, sway = m.stance(1, TRUNK, 0.08), m.stance(2, TRUNK, 0.2), ("Hips", "Spine")
     s_stand = b.stance(
@@ -583,11 +588,11 @@ def varied() -> Project:
 
 
 @numbered_ids()
-def standing() -> Project:
+def standing(rooted: bool = False) -> Project:
     """Return a project whose body has legs, and answers its arms: some of them moved by what the body plays,
-    too, one on knees that bend, in loops with a seam.
+    too, one on knees that bend, in loops with a seam. rooted: the hips have a joint above them.
     """
-    project = stick("standing", legs=True)
+    project = stick("standing", legs=True, rooted=rooted)
     body, arms = project.graphs["body"], project.graphs["arms"]
     stand, lean = body.stances
     shared = [a.clip for a in arms.actions.values() if a.kind == "gesture"]
@@ -619,7 +624,7 @@ def repeating(touch: bool = False) -> Project:
 
     touch: with a hand kept on the chest at two places, which makes the project "clasping".
     """
-    project = replace(standing(), name="clasping" if touch else "repeating")
+    project = replace(standing(rooted=True), name="clasping" if touch else "repeating")
     changes = {}
     for layer, kind, fields in (
         ("body", "gesture", {"repeat": 1.7}),
