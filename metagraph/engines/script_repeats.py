@@ -58,18 +58,15 @@ def list_repeat_cases(project: Project) -> Iterator[ScriptCase]:
                 asks,
                 28.0,
             )
-            steps = [
-                ScriptStep(0.0, 12.0, (ask("r", "action", 1.0, action=one.id, duration=6.0, mood="excited"),))
-            ]
-            steps += [ScriptStep(1.6, 12.0, (ask("now", "action", action=others[0].id, priority=3),))]
-            steps += [
-                ScriptStep(
-                    8.0, 24.0, (ask("s", "action", 9.0, action=one.id, duration=6.0, mood=[-0.8, -0.8]),)
-                )
-            ]
-            steps += [ScriptStep(9.6, 24.0, (ask("then", "action", action=others[0].id, priority=3),))]
+            quick = ask("r", "action", 1.0, action=one.id, duration=6.0, mood="excited")
+            slow = ask("s", "action", 13.0, action=one.id, duration=6.0, mood=[-0.8, -0.8])
+            steps = (
+                ScriptStep(0.0, 24.0, (quick, slow)),
+                ScriptStep(1.6, 24.0, (ask("now", "action", action=others[0].id, late=3.0),)),
+                ScriptStep(13.6, 30.0, (ask("then", "action", action=others[0].id, late=3.0),)),
+            )
             yield ScriptCase(
                 f"{layer}: {one.id} is left while it plays",
                 "sooner in a quick mood than in a slow one",
-                tuple(steps),
+                steps,
             )

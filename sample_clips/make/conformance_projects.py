@@ -693,7 +693,7 @@ def stepping(layer: Layer = "body") -> Project:
     nearest = m.clip("nearest", 46, 1.5, m.stance(29, LEGS, 0.006), None, sway, 0.1)
     b.act(layer, "gesture", stand, nearest)
     sudden = m.clip("sudden", 37, 1.2, m.stance(26, LEGS, 0.08), None, sway, 0.2)
-    b.act(layer, "fidget", stand, sudden, timing={"blend_in": 0.0, "blend_out": 0.0})
+    b.act(layer, "fidget", stand, sudden, timing={"blend_in": 0.0, "blend_out": 0.05})
     if layer != "body":
         b.project = edits.set_weight(b.project, layer, "legs", 1.0)
         return replace(
