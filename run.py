@@ -16,6 +16,7 @@ import shutil
 import subprocess
 import sys
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
@@ -213,7 +214,12 @@ def environment(most):
     print("Installing dependencies ...", flush=True)
     # Modules are compiled when they are first imported: most never are.
     install = ("install", "--disable-pip-version-check", "-q", "--no-compile")
-    if not pip(*install, *(word for name in LISTS[: most + 1] for word in ("-r", str(ROOT / name)))):
+    # What only tests need comes at the same time, from a process of its own: to unpack it keeps a core busy.
+    lists = [[*install, *listed(LISTS[: min(most, 1) + 1])]]
+    lists += [[*install, "--no-deps", *listed(LISTS[2:])]] if most == 2 else []
+    with ThreadPoolExecutor() as beside:
+        installed = all(list(beside.map(lambda words: pip(*words), lists)))
+    if not installed:
         return (
             "The dependencies could not be installed; what pip said is above. Check the network and "
             "start "
@@ -226,6 +232,11 @@ def environment(most):
         print("(FBX files cannot be read on this system; BVH and glTF can.)")
     stamp(most).write_text(wanted(most))
     return None
+
+
+def listed(names):
+    """Return pip's options for some lists."""
+    return [word for name in names for word in ("-r", str(ROOT / name))]
 
 
 def stamp(most):

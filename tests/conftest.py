@@ -60,7 +60,7 @@ os.fsync = not_waiting
 # Files that take longest, the longest first: begun late, one of them would keep one process busy while the
 # others have nothing left.
 LONG = (
-    "engines/test_runtime_cpp.py",
+    "engines/test_cpp_compiles.py",
     "engines/test_targets.py",
     "engines/test_avatar.py",
     "engines/test_runtime_godot4.py",

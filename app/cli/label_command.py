@@ -23,6 +23,7 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.graph.model import Project
     from metagraph.graph.problem import Problem
     from metagraph.suggest.alike import LabelledExample
+    from metagraph.suggest.proposal import Proposal
     from metagraph.suggest.words.patterns import Patterns
 
 
@@ -183,11 +184,12 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     for word, reasons in (("skipped", found.aside), ("left", taken.left)):
         _tell(word, [f"{_several(project, clips)}: {why}" for why, clips in group_reasons(reasons)])
     _tell("problem", errors)
+    names = {clip: project.clips[clip].name for clip in found.proposals}
+    disputed = _tell_disputed([p for p in found.proposals.values() if p not in look], names)
     words = (
         f"{path}: {len(taken.placed)} of {len(found.proposals)} clips labelled in {seconds:.1f} s, "
-        f"{len(look)} need a look" + (f"\n{place}" if changed else "")
+        f"{_count_looks(len(look), len(disputed))}" + (f"\n{place}" if changed else "")
     )
-    names = {clip: project.clips[clip].name for clip in found.proposals}
     data: dict[str, Any] = {
         "project": str(path),
         "report": str(place) if changed else None,
@@ -200,6 +202,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         "twins": _count_lacking(one_sided) if options.twins else 0,
         "aside": {project.clips[c].name: why for c, why in found.aside.items()},
         "look": [names[p.clip] for p in look],
+        "disputed": disputed,
         "errors": errors,
         "seconds": round(seconds, 2),
     }
@@ -214,6 +217,23 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     if options.json:
         print(json.dumps({**data, "seen": [p.message for p in seen]}))
     return _exit_code(len(taken.left), len(errors), sum(p.severity == "error" for p in seen))
+
+
+def _tell_disputed(proposals: Iterable[Proposal], names: Mapping[str, str]) -> list[str]:
+    """Print where name and motion contradict each other; return the names of these clips."""
+    disputed = {names[p.clip]: p.conflicts[0] for p in proposals if p.conflicts}
+    _tell("contradiction", [f"{name}: {why}" for name, why in disputed.items()])
+    return [*disputed]
+
+
+def _count_looks(looks: int, disputed: int) -> str:
+    """Return how many clips somebody should look at, and how many more are called what they do not do."""
+    words = f"{looks} {'needs' if looks == 1 else 'need'} a look"
+    if not disputed:
+        return words
+    return (
+        f"{words}, and the name of {disputed} more contradicts {'its' if disputed == 1 else 'their'} motion"
+    )
 
 
 def _count_lacking(one_sided: Sequence[OneSided]) -> int:

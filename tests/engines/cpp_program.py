@@ -243,9 +243,10 @@ def made_of_unreal(folder: Path, core: Path | None = None) -> list[str]:
     return [f"-I{place}" for place in (names, STAND_IN, *sides)]
 
 
-def make_probe(folder: Path, parts: dict[str, str]) -> None:
-    """Compile the program `probe`, with a switch for each mutant. parts: programs that include the runtime and
-    what every program includes, by the word that runs them.
+def write_probe(folder: Path, parts: dict[str, str]) -> list[str | Path]:
+    """Write the program `probe.cpp`, with a switch for each mutant, and return where its compiler finds what it
+    includes. parts: programs that include the runtime and what every program includes, by the word that runs
+    them.
     """
     core = folder / "core"
     core.mkdir()
@@ -264,16 +265,20 @@ def make_probe(folder: Path, parts: dict[str, str]) -> None:
         (folder / f"{name}.cpp").write_text(text)
     included = [f'namespace part_{name} {{\n#include "{name}.cpp"\n}}' for name in parts]
     choices = [f'if (what == "{name}") return part_{name}::main_(count - 1, words + 1);' for name in parts]
-    source = folder / "probe.cpp"
-    source.write_text(
+    (folder / "probe.cpp").write_text(
         PROBE.replace("PARTS", "\n".join(["#define main main_", *included, "#undef main"]), 1).replace(
             "CHOICES", "\n    ".join(choices), 1
         )
     )
-    places = ["-I", core, *made_of_unreal(folder, core)]
+    return ["-I", core, *made_of_unreal(folder, core)]
+
+
+def make_probe(folder: Path, parts: dict[str, str]) -> None:
+    """Write and compile the program `probe`."""
+    places = write_probe(folder, parts)
     kept = KEPT / compiled_from(folder)
     if not kept.is_file():
-        compiled(source, folder / "probe", *places)
+        compiled(folder / "probe.cpp", folder / "probe", *places)
         shutil.rmtree(KEPT, ignore_errors=True)  # those of other sources are not needed any more
         KEPT.mkdir(parents=True)
         shutil.copy(folder / "probe", KEPT / "being copied")

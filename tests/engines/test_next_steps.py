@@ -58,6 +58,7 @@ def test_many_files_of_one_kind_are_counted():
     assert "| `*.vrma` | an animation for each action; 20 files |" in text and "Nothing." in text
 
 
+@pytest.mark.nightly
 def test_the_readme_of_every_export_says_what_each_of_its_files_is(few, tmp_path):
     """Where there is a figure to export; the guides that targets write themselves say it in their own words."""
     project = open_project(few).project

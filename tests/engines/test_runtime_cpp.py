@@ -29,7 +29,7 @@ ROOT = Path(__file__).resolve().parents[2]
 VECTORS = sorted(p.parent for p in (ROOT / "metagraph" / "engines" / "conformance").glob("*/vectors.json"))
 STICK = ROOT / "metagraph" / "engines" / "conformance" / "stick"
 
-pytestmark = needs_compiler
+pytestmark = [needs_compiler, pytest.mark.nightly]  # `test_cpp_compiles.py` is for each day
 
 
 @pytest.fixture(scope="module")
@@ -40,20 +40,17 @@ def probe(cpp_probe: Path) -> Path:
 # --- conformance
 
 
-@pytest.mark.nightly
 @pytest.mark.parametrize("folder", PLAYED, ids=lambda folder: folder.name)
 def test_the_runtime_agrees_with_the_vectors(probe: Path, folder: Path, tmp_path: Path) -> None:
     done = ran(probe, "conformance", share_of(folder, "cpp", tmp_path))
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
 
 
-@pytest.mark.nightly
 def test_the_runtime_agrees_with_the_sample_project(probe: Path, sample_export: Path) -> None:
     done = ran(probe, "conformance", sample_export)
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
 
 
-@pytest.mark.nightly
 def test_what_is_left_of_a_division_is_what_python_leaves_at_exact_multiples_too(probe: Path) -> None:
     rng = np.random.default_rng(3)
     parts = rng.choice([0.1, 0.31, 1.55, 2.0 / 3.0, 1.0 / 60.0, -0.7], 400).tolist()
@@ -70,7 +67,6 @@ def test_what_is_left_of_a_division_is_what_python_leaves_at_exact_multiples_too
     assert [float.fromhex(line) for line in told.stdout.split()] == [a % b for a, b in pairs]
 
 
-@pytest.mark.nightly
 def test_the_runner_fails_without_vectors_and_with_those_of_another_version(
     probe: Path, tmp_path: Path
 ) -> None:
@@ -84,7 +80,6 @@ def test_the_runner_fails_without_vectors_and_with_those_of_another_version(
     assert "update the runtime" in done.stdout
 
 
-@pytest.mark.nightly
 def test_single_cases_that_notice_mutants_pass_where_nothing_is_broken(probe: Path, single: Path) -> None:
     tried = {folders_to_try(hint, VECTORS, single)[0] for *_, hint in MUTANTS}
     assert all(folder.parent == single for folder in tried)
@@ -92,7 +87,6 @@ def test_single_cases_that_notice_mutants_pass_where_nothing_is_broken(probe: Pa
     assert done.returncode == 0, done.stdout
 
 
-@pytest.mark.nightly
 @pytest.mark.parametrize("number", range(1, len(MUTANTS) + 1), ids=lambda n: MUTANTS[n - 1][1][:40])
 def test_the_vectors_notice_a_broken_rule(probe: Path, single: Path, number: int) -> None:
     hint = MUTANTS[number - 1][3]

@@ -56,12 +56,14 @@ def test_the_node_shows_the_poses_of_the_vectors(cpp_probe: Path) -> None:
     assert f"{sum(len(case['poses']) for case in vectors['cases'])} poses" in done.stdout
 
 
+@pytest.mark.nightly
 @needs_compiler
 def test_space_is_changed_and_changed_back(cpp_probe: Path) -> None:
     done = played(cpp_probe, "space")
     assert done.stdout == "fits up 100 ahead 100\n"
 
 
+@pytest.mark.nightly
 @needs_compiler
 def test_the_component_plays_what_it_is_asked(cpp_probe: Path) -> None:
     done = played(cpp_probe, "play", STICK / "stick.json")
@@ -80,6 +82,7 @@ def test_the_component_plays_what_it_is_asked(cpp_probe: Path) -> None:
     assert (unknown, nowhere, interrupt) == ("refused", "refused", "done")
 
 
+@pytest.mark.nightly
 @needs_compiler
 def test_a_mesh_without_a_blueprint_shows_the_pose_and_morph_targets_are_curves(cpp_probe: Path) -> None:
     export = STICK.with_name("varied") / "varied.json"
@@ -91,6 +94,7 @@ def test_a_mesh_without_a_blueprint_shows_the_pose_and_morph_targets_are_curves(
     assert face.startswith("face alone ") and int(face.split()[-1]) > 0
 
 
+@pytest.mark.nightly
 @needs_compiler
 def test_parameters_of_the_project_are_set_by_typed_calls(cpp_probe: Path, tmp_path: Path) -> None:
     out = read_export(STICK / "stick.json", resolved=True)
@@ -111,6 +115,7 @@ def test_parameters_of_the_project_are_set_by_typed_calls(cpp_probe: Path, tmp_p
     assert values == 'values "happy" 0.5'
 
 
+@pytest.mark.nightly
 @needs_compiler
 def test_the_factory_leaves_other_json_alone_and_says_what_is_wrong(cpp_probe: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.json"

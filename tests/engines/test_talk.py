@@ -112,6 +112,7 @@ def test_words_and_their_gestures_are_those_of_python(told: Any, sample: Project
     assert some > 60
 
 
+@pytest.mark.nightly
 def test_text_that_comes_in_letter_by_letter_asks_for_what_python_asks_and_most_is_performed(
     told: Any, sample: Project
 ) -> None:

@@ -315,6 +315,7 @@ def test_cpp_says_what_javascript_says(
     same(json.loads(done.stdout), wanted)
 
 
+@pytest.mark.nightly
 @cpp_program.needs_compiler
 def test_small_letters_are_pythons_in_cpp(cpp_probe: Path) -> None:
     """Of the alphabets that lexicons are likely to be written in; all else stays as it is."""

@@ -661,6 +661,7 @@ def test_the_pages_csharp_compiles(talk: Project, tmp_path: Path) -> None:
     compiled(tmp_path / "game.dll", tmp_path / "Game.cs", tmp_path / "TalkCharacter.cs", *CORE)
 
 
+@pytest.mark.nightly
 @needs_compiler
 def test_the_pages_cpp_compiles(talk: Project, tmp_path: Path) -> None:
     (tmp_path / "metagraph").symlink_to(RUNTIMES / "cpp")

@@ -91,7 +91,9 @@ def measure_to_skin(points: Array, triangles: Array) -> Array:
     return np.array(out)
 
 
-@pytest.mark.parametrize("name", ["ada.glb", "ben.glb", "mannequin.glb"])
+@pytest.mark.parametrize(
+    "name", ["ada.glb", *(pytest.param(n, marks=pytest.mark.nightly) for n in ("ben.glb", "mannequin.glb"))]
+)
 @pytest.mark.parametrize("group", [LIMBS, TRUNK], ids=["limbs", "trunk"])
 def test_capsules_lie_on_the_skin(name: str, group: tuple[str, ...]) -> None:
     parts, triangles, _ = measured(name)

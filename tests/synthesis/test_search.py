@@ -128,6 +128,7 @@ def costs_of_frames(draw: st.DrawFn, name: str, frames: int, length: int) -> Fra
     return FrameCost(name, np.array(at, np.int32), np.array(rows, np.float32))
 
 
+@pytest.mark.nightly
 @given(st.data())
 @settings(max_examples=60, deadline=None)
 def test_the_best_path_is_the_cheapest_of_all_and_is_found_whenever_there_is_one(data: st.DataObject) -> None:

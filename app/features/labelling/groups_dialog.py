@@ -24,6 +24,7 @@ from PySide6.QtWidgets import (
 from app.features.labelling.clip_groups import ClipGroup, group_alike, is_doubtful
 from app.features.labelling.group_sheet import GroupSheet, SheetCard
 from app.features.labelling.review_session import Reviewing
+from app.features.labelling.review_words import describe_placing
 from app.look.names import drop_common_start, make_readable_name
 from app.look.theme import KIND_MARKS, get_theme, strengthen
 from app.stage.session import StageSession
@@ -48,7 +49,7 @@ class GroupsDialog(QDialog):
         super().__init__(parent)
         self.work, self.session = work, session
         self.groups: list[ClipGroup] = []
-        self._refused = ""  # why a clip could not be placed, until the next decision
+        self._unexpected = ""  # what was not placed, or was placed, too; until the next decision
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Review in groups"))
         if parent is not None:
@@ -177,12 +178,8 @@ class GroupsDialog(QDialog):
         self.go.setText(tr_plural("Accept {count:,} clip", "Accept {count:,} clips", count))
         self.go.setEnabled(count > 0)
         hint = tr("Click a clip that does not belong to leave it out. Double-click to look at it by itself.")
-        self.told.setText(
-            self._refused
-            or tr_plural("{count:,} clip stays in the review.", "{count:,} clips stay in the review.", out)
-            if out
-            else hint
-        )
+        stays = tr_plural("{count:,} clip stays in the review.", "{count:,} clips stay in the review.", out)
+        self.told.setText(self._unexpected or (stays if out else hint))
 
     # --- deciding
 
@@ -192,19 +189,15 @@ class GroupsDialog(QDialog):
         if not clips:
             return
         row, key = self.list.currentRow(), self.groups[self.list.currentRow()].key
-        self._refused = ""
         taken = self.work.place(clips, tr("Label {clips} clips", clips=len(clips)), None)
-        why = next(iter(taken.left.items()), None)
-        if why is not None:
-            name = self.work.document.project.clips[why[0]].name
-            self._refused = tr("{name} was not placed: {why}.", name=name, why=tr_phrase(why[1]))
+        self._unexpected = describe_placing(taken, clips)
         self._regroup()
         others = [n for n, group in enumerate(self.groups) if group.key != key]
         self.list.setCurrentRow(next((n for n in others if n >= row), others[0] if others else row))
 
     def _correct(self, name: Field, value: object) -> None:
         """Take a value for a field of every clip that was not left out."""
-        self._refused = ""
+        self._unexpected = ""
         self.work.tell_all(self.sheet.chosen, name, value)
         self.setFocus()
 

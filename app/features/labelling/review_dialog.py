@@ -416,15 +416,8 @@ class ReviewDialog(QDialog):
             )
             return
         self.go_to(self.work.after(self.current))
-        if why is not None:
-            self.queue.words.setText(
-                tr(
-                    "Placed {placed}. {name} was not placed: {why}.",
-                    placed=len(taken.placed),
-                    name=self.document.project.clips[why[0]].name,
-                    why=why[1],
-                )
-            )
+        if unexpected := review_words.describe_placing(taken, clips):
+            self.queue.words.setText(unexpected)
 
     def review_groups(self) -> None:
         """Show clips with the same proposal side by side, and accept them together."""

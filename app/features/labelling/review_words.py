@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from html import escape
 
 from app.look.theme import KIND_MARKS, KIND_TITLES, WindowTheme
 from app.translation import format_number, make_lazy_texts, tr, tr_noop, tr_phrase, tr_plural
 from app.widgets.vocabulary import get_vocabulary_title
 from metagraph.graph.model import Project
+from metagraph.suggest.accept import AcceptedProposals
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import Review
 
@@ -68,6 +69,28 @@ def write_headline(review: Review, project: Project, clip: str, look: WindowThem
     against = [*p.conflicts, *([p.timing_reason] if p.good is False else [])]
     lines += [f'<span style="color:{look.warning}">⚠ {escape(tr_phrase(words))}</span>' for words in against]
     return "<br>".join(lines)
+
+
+def describe_placing(taken: AcceptedProposals, clips: Collection[str]) -> str:
+    """Return what a user would not expect of the `clips` that were accepted: which one was not placed,
+    and which others were placed, too; "" if nothing. The stance of a gesture is placed with it.
+    """
+    name = lambda clip: taken.project.clips[clip].name  # noqa: E731
+    along = [clip for clip in taken.placed if clip not in clips]
+    words = []
+    if along:
+        words.append(
+            tr_plural(
+                "Placed {name}, too: the others need its stance.",
+                "Placed {count:,} more ({name}): the others need their stances.",
+                len(along),
+                name=", ".join(map(name, along)),
+            )
+        )
+    if taken.left:
+        clip, why = next(iter(taken.left.items()))
+        words.append(tr("{name} was not placed: {why}.", name=name(clip), why=tr_phrase(why)))
+    return " ".join(words)
 
 
 def describe_skipped(aside: Sequence[str]) -> str:

@@ -35,6 +35,7 @@ def said_by(probe: Path, name: str) -> list[str]:
     return [line for line in cpp_program.ran(probe, name).stdout.splitlines() if line.strip()]
 
 
+@pytest.mark.nightly
 def test_in_cpp_letters_become_the_mouth_shapes_they_become_in_python(cpp_probe: Path) -> None:
     said = []
     for text in TEXTS:
@@ -49,6 +50,7 @@ def test_in_cpp_letters_become_the_mouth_shapes_they_become_in_python(cpp_probe:
     assert said_by(cpp_probe, "letters") == said
 
 
+@pytest.mark.nightly
 def test_in_cpp_models_write_and_plans_are_made_anew_as_in_python(cpp_probe: Path) -> None:
     """The whole way through what is translated: draws, what a model writes, what replanning makes of it."""
     metas, cursor = markov.write(markov.ARMS, SEED, UNTIL)

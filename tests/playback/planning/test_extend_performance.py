@@ -100,6 +100,7 @@ def in_ticks(
     return out
 
 
+@pytest.mark.nightly
 @settings(max_examples=thorough.many(6, 50))
 @given(some_asks, st.sampled_from([0.016, 0.2, 1.7]))
 def test_live_in_ticks_gives_what_one_plan_gives(asks: list[Any], tick: float) -> None:
