@@ -25,6 +25,7 @@ TEXTS: tuple[tuple[str, str, float | None, bool], ...] = (
     ("en", "Then the others came along the river and we went home together that evening", None, False),
     ("en", "She left the keys under a large green pot near the door of the house", None, False),
     ("en", "It goes on, and on.  \n ", None, False),
+    ("en", "No la la la la la la la la la no la la la la la la la la no la la la", None, True),
     ("en", "Listen to the waves and the rock o'", None, False),
     ("en", "First one line\nthen the “second”. (It ends.)\n\nThird 3.5", None, False),
     ("en", "ぁ a ヿ b ｦ c ﾝ d 㐀 e 豈 f 𠀀 g 가 h 힣 i ﾞa j. ぁぁヿヿ ｦｦﾝﾝ 가힣", None, False),

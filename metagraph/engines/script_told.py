@@ -133,6 +133,13 @@ def list_told_cases(project: Project) -> Iterator[ScriptCase]:
         )
     asks = [ask(f"r{n}", "say", 0.5 * n, **said) for n, said in enumerate(_REFUSED)]
     yield make_case("told so that it cannot be said", "or just so that it can", asks, 20.0, alive=())
+    shapes = [
+        mark
+        for n in range(30)
+        for mark in ([0.35 * n, "aa"], [0.35 * n + (0.04, 0.2, 0.08, 0.3, 0.12)[n % 5], "PP"])
+    ]
+    asks = [ask("v", "say", 1.0, visemes=shapes), ask("w", "say", 14.0, visemes=shapes[1::3])]
+    yield make_case("open for long and short", "what is open for longer is stressed", asks, 26.0, alive=())
     yield _letters()
     yield _anew()
     yield _broken_off(project)
