@@ -23,7 +23,7 @@ TEXTS: tuple[tuple[str, str, float | None, bool], ...] = (
     ("es", "¡Hola! ¿Cómo está usted? No sé; tal vez mañana, señor ÑANDÚ.", 6.25, False),
     ("en", "We walked along the river with some bread", None, False),
     ("en", "Then the others came along the river and we went home together that evening", None, False),
-    ("en", "She left the keys under a large green pot near the door of the house", None, False),
+    ("en", "She left the keys under a pot near the door of the house", None, False),
     ("en", "It goes on, and on.  \n ", None, False),
     ("en", "No la la la la la la la la la no la la la la la la la la no la la la", None, True),
     ("en", "Listen to the waves and the rock o'", None, False),
@@ -34,7 +34,7 @@ TEXTS: tuple[tuple[str, str, float | None, bool], ...] = (
 )
 
 
-EDGES = (53, 186)  # seeds whose draws for one of the texts lie just on either side of `PLAIN`
+EDGES = (10, 4)  # seeds whose draws for one of the texts lie just on either side of `PLAIN`
 
 
 def list_talks() -> list[dict[str, Any]]:
