@@ -144,6 +144,13 @@ def list_told_cases(project: Project) -> Iterator[ScriptCase]:
     yield _anew()
     yield _broken_off(project)
     yield _kept(project)
+    alone = (
+        ScriptStep(0.0, _ENDS),
+        ScriptStep(5.0, _ENDS, (ask("m", "mood", mood="sad"),)),
+        ScriptStep(11.0, _ENDS, (ask("w", "withdraw", what="m"),)),
+        ScriptStep(14.0, _ENDS, (ask("n", "mode", mode="listening"),)),
+    )
+    yield ScriptCase("a mood by itself", "all layers are planned again", alone, idle=True, alive=())
     yield _called(project)
     yield from _same(project)
 
