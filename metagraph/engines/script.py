@@ -20,7 +20,9 @@ from metagraph.engines.script_parts import make_case as _once
 from metagraph.engines.script_repeats import list_repeat_cases
 from metagraph.engines.script_replaced import list_replaced_cases
 from metagraph.engines.script_shades import list_shade_cases
+from metagraph.engines.script_speech import list_speech_cases
 from metagraph.engines.script_timely import list_timely_cases
+from metagraph.engines.script_told import list_told_cases
 from metagraph.engines.script_utterances import list_utterance_cases
 from metagraph.engines.script_weight import list_weight_cases
 from metagraph.graph.expand import find_chain
@@ -45,6 +47,8 @@ def make_script_cases(project: Project) -> Iterator[ScriptCase]:
         list_face_cases,
         list_replaced_cases,
         list_utterance_cases,
+        list_speech_cases,
+        list_told_cases,
         list_chatter_cases,
         list_weight_cases,
         list_feet_cases,
@@ -65,6 +69,8 @@ def _alone(project: Project) -> Iterator[ScriptCase]:
     yield _once(
         "the models with another seed", "every draw is another one", [], 30.0, idle=True, seed=0xFFFFFFFF
     )
+    about = "what is likelier the longer ago it was, and how long stances last at least"
+    yield _once("eight minutes", about, [], 480.0, idle=True, seed=5, alive=())
     yield _once("no time at all", "a plan of 0 seconds", [], 0.0, idle=True)
     for layer in LAYERS:
         for stance in list(project.graphs[layer].stances)[1:3]:

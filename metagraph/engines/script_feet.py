@@ -11,7 +11,7 @@ from metagraph.graph.model import Project
 from metagraph.playback.posing.rigs import get_rigs
 from metagraph.playback.posing.weight import has_planted_feet
 
-MOST = 6  # actions in a case
+MOST = 9  # actions in a case
 EDGES = (
     -0.04,
     0.03,
@@ -42,7 +42,7 @@ def list_feet_cases(project: Project) -> Iterator[ScriptCase]:
                 times |= {1.0 + 3.0 * n + x for x in EDGES} | {1.0 + 3.0 * n + end - start - x for x in EDGES}
             about = "feet are held, and step, as the body's actions come and go"
             more = {"stances": {layer: stance}, "times": tuple(sorted(round(t, 3) for t in times))}
-            yield make_case(f"feet in {stance}", about, asks, 20.0, alive=(True,), **more)
+            yield make_case(f"feet in {stance}", about, asks, 29.0, alive=(True,), **more)
     ways = [a for a in body.actions.values() if a.kind == "transition" and a.stance == body.start][:2]
     asks = []
     for n, action in enumerate(ways):

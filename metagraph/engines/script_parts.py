@@ -26,7 +26,8 @@ class ScriptStep:
 @dataclass(frozen=True)
 class ScriptCase:
     """One script. times: at which poses are compared, the most telling ones where empty. alive: with the life
-    layers, without, both.
+    layers, without, both. watched: times after the last step at which is looked, as after each
+    step, at what was spoken, what began and ended, and what became of each request; None to look nowhere.
     """
 
     name: str
@@ -37,6 +38,7 @@ class ScriptCase:
     stances: Mapping[Layer, str] = field(default_factory=dict)
     times: tuple[float, ...] = ()
     alive: tuple[bool, ...] = (False,)
+    watched: tuple[float, ...] | None = None
 
 
 def make_case(name: str, about: str, asks: Sequence[Ask], end: float = 14.0, **more: Any) -> ScriptCase:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from metagraph.engines.script_parts import ScriptCase, ask, list_some_actions, make_case
+from metagraph.engines.script_parts import ScriptCase, ScriptStep, ask, list_some_actions, make_case
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.repeating import cycle_of
 
@@ -57,4 +57,16 @@ def list_repeat_cases(project: Project) -> Iterator[ScriptCase]:
                 "after its first cycle it may be left; what was cut goes on for what is left of its time",
                 asks,
                 28.0,
+            )
+            quick = ask("r", "action", 1.0, action=one.id, duration=6.0, mood="excited")
+            slow = ask("s", "action", 13.0, action=one.id, duration=6.0, mood=[-0.8, -0.8])
+            steps = (
+                ScriptStep(0.0, 24.0, (quick, slow)),
+                ScriptStep(1.6, 24.0, (ask("now", "action", action=others[0].id, late=3.0),)),
+                ScriptStep(13.6, 30.0, (ask("then", "action", action=others[0].id, late=3.0),)),
+            )
+            yield ScriptCase(
+                f"{layer}: {one.id} is left while it plays",
+                "sooner in a quick mood than in a slow one",
+                steps,
             )

@@ -21,9 +21,20 @@ TEXTS: tuple[tuple[str, str, float | None, bool], ...] = (
     ("de", "Grüß Gott, ÄPFEL schmecken großartig! Ich weiß nicht, ob es stimmt. Oder?", None, False),
     ("fr", "Bonjour ! Peut-être qu’il ne vient pas, ÉTÉ comme hiver. C’est énorme.", None, False),
     ("es", "¡Hola! ¿Cómo está usted? No sé; tal vez mañana, señor ÑANDÚ.", 6.25, False),
+    ("en", "We walked along the river with some bread", None, False),
+    ("en", "Then the others came along the river and we went home together that evening", None, False),
+    ("en", "She left the keys under a pot near the door of the house", None, False),
+    ("en", "It goes on, and on.  \n ", None, False),
+    ("en", "No la la la la la la la la la no la la la la la la la la no la la la", None, True),
+    ("en", "Listen to the waves and the rock o'", None, False),
+    ("en", "First one line\nthen the “second”. (It ends.)\n\nThird 3.5", None, False),
+    ("en", "ぁ a ヿ b ｦ c ﾝ d 㐀 e 豈 f 𠀀 g 가 h 힣 i ﾞa j. ぁぁヿヿ ｦｦﾝﾝ 가힣", None, False),
     ("en", "", None, False),
     ("en", "日本語です。はい！ no、 …?!", None, False),
 )
+
+
+EDGES = (10, 4)  # seeds whose draws for one of the texts lie just on either side of `PLAIN`
 
 
 def list_talks() -> list[dict[str, Any]]:
@@ -40,6 +51,8 @@ def list_talks() -> list[dict[str, Any]]:
         row: dict[str, Any] = {"language": language, "text": text, "seconds": seconds, "told": times}
         row |= {"seed": 0xFFFFFFFF - 3 * n, "at": 0.5 * n, "arms": arms, "head": n % 3 != 2}
         out.append({**row, **analyse_talk(row)})
+        for seed in EDGES if text.startswith("She left") else ():
+            out.append({**row, "seed": seed, **analyse_talk({**row, "seed": seed})})
     return out
 
 

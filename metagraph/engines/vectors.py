@@ -21,9 +21,12 @@ from numpy.typing import NDArray
 from metagraph.engines.reading import read_export
 from metagraph.engines.script import make_script_cases
 from metagraph.engines.script_boundaries import list_boundary_cases
+from metagraph.engines.script_parameters import list_settings, run_settings
 from metagraph.engines.script_parts import ScriptCase, ScriptStep
-from metagraph.engines.script_sounds import list_heard_marks, list_streams
+from metagraph.engines.script_sounds import find_heard, list_streams
+from metagraph.engines.script_sympathy import find_sympathies, list_taken_moods
 from metagraph.engines.script_talk import analyse_talk, list_talks
+from metagraph.engines.watched_case import CaseWatch
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import LAYERS, Project
@@ -55,8 +58,10 @@ HASHES: tuple[tuple[int, tuple[str, ...]], ...] = (
 )
 
 
-def play_case(project: Project, case: ScriptCase) -> Plan:
-    """Return the plan a case leads to. What cannot be read is in its reports, as a runtime tells it."""
+def play_case(project: Project, case: ScriptCase, watch: CaseWatch | None = None) -> Plan:
+    """Return the plan a case leads to. What cannot be read is in its reports, as a runtime tells it. watch:
+    what looks on.
+    """
     plan = Plan(case.seed, 0.0)
     for step in case.steps:
         asks: list[AnyRequest] = []
@@ -69,8 +74,13 @@ def play_case(project: Project, case: ScriptCase) -> Plan:
                 refused.append(Report(ask.get("id", ""), "not-understood", str(error), "arms", at))
         plan = hear_asks(project, plan, step.now, asks, step.end, case.stances, case.idle)
         plan = replace(plan, reports=(*plan.reports, *refused))
+        if watch is not None:
+            watch.look(plan, step.now, [dict(ask) for ask in step.asks])
         if step.forget is not None:
             plan = drop_ended(plan, step.forget)
+    if watch is not None:
+        for seconds in case.watched or ():
+            watch.look(plan, seconds, [])
     return plan
 
 
@@ -80,9 +90,9 @@ def list_cases(project: Project) -> Iterator[ScriptCase]:
     yield from list_boundary_cases(project)
 
 
-def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None) -> Path:
+def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None, common: bool = True) -> Path:
     """Write the vectors of an export beside its JSON; return the file. chosen: the cases, all that suit it
-    when None.
+    when None. common: also what is the same for every character: sounds, texts, others' moods.
 
     Raises FileError when the export cannot be read or the file cannot be written.
     """
@@ -94,11 +104,12 @@ def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None) -> P
         "tolerance": {"metres": METRES, "degrees": DEGREES, "seconds": SECONDS, "weight": WEIGHT},
         "hashes": [[seed, list(words), key32(seed, *words)] for seed, words in HASHES],
         "described": list_offered_requests(project),
-        "heard": [
-            {"rate": rate, "pieces": pieces, "marks": list_heard_marks(rate, pieces)}
-            for rate, pieces in list_streams()
-        ],
-        "talked": list_talks(),
+        **(
+            {"heard": list_streams(), "talked": list_talks(), "sympathies": list_taken_moods()}
+            if common
+            else {}
+        ),
+        "settings": list_settings(project),
     }
     lines = ",\n".join(json.dumps(case, ensure_ascii=False, separators=(",", ":")) for case in found)
     text = json.dumps(head, ensure_ascii=False)[:-1] + f', "cases": [\n{lines}\n]}}\n'
@@ -108,7 +119,8 @@ def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None) -> P
 
 
 def _expected(project: Project, case: ScriptCase) -> dict[str, Any]:
-    plan = play_case(project, case)
+    watch = CaseWatch() if case.watched is not None else None
+    plan = play_case(project, case, watch)
     times = case.times or _telling(plan)
     answers = has_weight(project) and get_rigs(project).weight.rig is not None
     evaluator = Evaluator(plan, project)
@@ -122,6 +134,7 @@ def _expected(project: Project, case: ScriptCase) -> dict[str, Any]:
         "steps": [{"now": s.now, "end": s.end, "asks": list(s.asks), "forget": s.forget} for s in case.steps],
         "plan": plan_data(plan),
         "life": make_life_data(plan),
+        **({"watched": watch.rows} if watch is not None else {}),
         "poses": [
             pose for alive in case.alive for pose in _poses(evaluator, living if alive else times, alive)
         ],
@@ -324,12 +337,21 @@ def check_vectors(folder: Path, project: Project | None = None) -> Outcome:
     )
     out.failures += [("described", what) for what in wrong]
     for n, sound in enumerate(data.get("heard", ())):
-        wrong = _unlike(list_heard_marks(sound["rate"], sound["pieces"]), sound["marks"], f"heard[{n}]")
+        heard = find_heard(sound)
+        wrong = _unlike(heard, {name: sound[name] for name in heard}, f"heard[{n}]")
         out.failures += [("heard", what) for what in wrong]
     for n, row in enumerate(data.get("talked", ())):
         found = analyse_talk(row)
         wrong = _unlike(found, {name: row[name] for name in found}, f"talked[{n}]")
         out.failures += [("talked", what) for what in wrong]
+    for n, row in enumerate(data.get("sympathies", ())):
+        found = find_sympathies(row)
+        wrong = _unlike(found, {name: row[name] for name in found}, f"sympathies[{n}]")
+        out.failures += [("sympathies", what) for what in wrong]
+    if "settings" in data:
+        pairs = [(row["name"], row["value"]) for row in data["settings"]]
+        wrong = _unlike(run_settings(project, pairs), data["settings"], "settings")
+        out.failures += [("settings", what) for what in wrong]
     for case in data["cases"]:
         wrong = find_case_differences(project, case)
         out.failures += [(case["name"], what) for what in wrong]
@@ -340,10 +362,14 @@ def check_vectors(folder: Path, project: Project | None = None) -> Outcome:
 def find_case_differences(project: Project, case: Mapping[str, Any]) -> list[str]:
     """Return in words how what this library makes of a case differs from what the case expects."""
     steps = tuple(ScriptStep(s["now"], s["end"], tuple(s["asks"]), s["forget"]) for s in case["steps"])
-    plan = play_case(
-        project, ScriptCase(case["name"], "", steps, case["seed"], case["idle"], case["stances"])
+    watched = [row["now"] for row in case.get("watched", ())][len(steps) :]
+    watch = CaseWatch() if "watched" in case else None
+    script = ScriptCase(
+        case["name"], "", steps, case["seed"], case["idle"], case["stances"], watched=tuple(watched)
     )
+    plan = play_case(project, script, watch)
     out = [
+        *(_unlike(watch.rows, case["watched"], "watched") if watch is not None else ()),
         *_unlike(plan_data(plan), case["plan"], "plan"),
         *_unlike(make_life_data(plan), case["life"], "life"),
     ]

@@ -25,6 +25,7 @@ from sample_clips.make.conformance_projects import (
     still,
     touching,
     varied,
+    with_parameters,
 )
 from sample_clips.make.randomised_projects import randomised
 
@@ -101,7 +102,16 @@ def without_version(path: Path) -> None:
 def main() -> None:
     touched = touching(randomised(1)), touching(randomised(2, BOTH_EYES))
     footed = standing(), stepping(), stepping("arms")
-    for project in (stick(), varied(), sparse(), *footed, repeating(), repeating(True), *touched, *still()):
+    for project in (
+        with_parameters(stick()),
+        varied(),
+        sparse(),
+        *footed,
+        repeating(),
+        repeating(True),
+        *touched,
+        *still(),
+    ):
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
         made = write_project_files(
@@ -121,7 +131,7 @@ def main() -> None:
             chosen = [*list_repeat_cases(project), *(c for c in list_cases(project) if c.name == "chatter 1")]
         if project.name == "clasping":
             chosen = [case for case in list_repeat_cases(project) if case.name.startswith("arms")]
-        path = write_vectors(made.json, chosen)
+        path = write_vectors(made.json, chosen, common=project.name == "stick")
         print(
             f"{path.parent.name}: {path.stat().st_size / 1e3:.0f} kB of vectors, "
             f"{made.glb.stat().st_size / 1e3:.0f} kB of clips"

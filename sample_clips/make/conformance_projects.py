@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import edits
+from metagraph.graph.editing.parameters import set_parameter
 from metagraph.graph.face.rig import with_morphs
 from metagraph.graph.life import Life, Manner
 from metagraph.graph.model import Action, Kind, Layer, Limb, Markov, Project
-from metagraph.graph.requests import Gesture, Line, Nod
+from metagraph.graph.parameter import CharacterParameter, make_parameter_choices
+from metagraph.graph.requests import Feel, Gesture, Go, Line, Look, Nod, Place
 from metagraph.graph.touch import Touch
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -82,9 +84,10 @@ MORPHS = (  # of faces that have no joints
 )
 
 
-def stick_skeleton(more: tuple[str, ...] = (), legs: bool = False) -> Skeleton:
+def stick_skeleton(more: tuple[str, ...] = (), legs: bool = False, rooted: bool = False) -> Skeleton:
     """Return the mannequin's skeleton with few joints, each turned some way, so that no rest rotation is the
-    identity. more: parts of the names of joints that are left out as well. legs: those are there.
+    identity. more: parts of the names of joints that are left out as well. legs: those are there. rooted: the
+    hips have a joint above them, on the floor.
     """
     without = [word for word in (*LEFT_OUT, *more) if not (legs and word in ("Leg", "Foot"))]
     whole = mannequin_skeleton()
@@ -106,6 +109,13 @@ def stick_skeleton(more: tuple[str, ...] = (), legs: bool = False) -> Skeleton:
             back = rotation.conjugate(turns[up])
             local_r[n] = rotation.multiply(back, turns[n])
             local_t[n] = rotation.rotate_vectors(back, positions[n] - positions[up])
+    if rooted:
+        turn = rotation.exp(np.array([[0.2, -0.4, 0.1]]))
+        back = rotation.conjugate(turn[0])
+        local_r[0] = rotation.multiply(back, local_r[0])
+        local_t[0] = rotation.rotate_vectors(back, local_t[0])
+        names, parents = ["Root", *names], [-1, *(up + 1 for up in parents)]
+        local_r, local_t = np.vstack([turn, local_r]), np.vstack([np.zeros((1, 3)), local_t])
     return Skeleton(tuple(names), np.array(parents), local_r, local_t)
 
 
@@ -187,10 +197,15 @@ class Builder:
     """A project being built."""
 
     def __init__(
-        self, name: str, morphs: tuple[str, ...] = (), size: float = 1.0, legs: bool = False
+        self,
+        name: str,
+        morphs: tuple[str, ...] = (),
+        size: float = 1.0,
+        legs: bool = False,
+        rooted: bool = False,
     ) -> None:
         # A face of morph targets has no joints.
-        self.moves = Moves(stick_skeleton(("Eye", "Lid", "Jaw") if morphs else (), legs), size)
+        self.moves = Moves(stick_skeleton(("Eye", "Lid", "Jaw") if morphs else (), legs, rooted), size)
         self.moves.morphs = morphs
         self.project = Project(name=name)
 
@@ -228,13 +243,18 @@ class Builder:
 
 @numbered_ids()
 def stick(
-    name: str = "stick", morphs: tuple[str, ...] = (), size: float = 1.0, legs: bool = False
+    name: str = "stick",
+    morphs: tuple[str, ...] = (),
+    size: float = 1.0,
+    legs: bool = False,
+    rooted: bool = False,
 ) -> Project:
     """Return a project of three layers, chains of stances, several loops, masks, exits, phases and lines.
 
-    size: of the stances' turns, times the usual ones. legs: whether it has any.
+    size: of the stances' turns, times the usual ones. legs, rooted: whether it has any, and a joint above the
+    hips.
     """
-    b = Builder(name, morphs, size, legs)
+    b = Builder(name, morphs, size, legs, rooted=rooted)
     m = b.moves
     stand, lean, sway = m.stance(1, TRUNK, 0.08), m.stance(2, TRUNK, 0.2), ("Hips", "Spine")
     s_stand = b.stance(
@@ -413,6 +433,43 @@ def stick(
     return replace(plain, lines=lines, voices=voices, points={"door": (1.5, 1.2, 0.5)})
 
 
+def with_parameters(project: Project) -> Project:
+    """Return a project that games set by named values, of every type, some of them beside others or instead
+    of them.
+    """
+    arms = [s.id for s in project.graphs["arms"].stances.values()]
+    moods = make_parameter_choices((name, name) for name in ("happy", "sad", "angry"))
+    places = make_parameter_choices((("partner", "user"), ("ahead", "ahead"), ("door", "door")))
+    shown = make_parameter_choices((tag, tag) for tag in ("greeting", "negative", "positive"))
+    off_on = make_parameter_choices((("off", None), ("on", "tired")))
+    stances = make_parameter_choices(zip(("first", "second", "third"), arms, strict=False))
+    made = {
+        "strength": CharacterParameter(
+            type="number", request=Feel(), field="intensity", least=0.25, most=1.5
+        ),
+        "feeling": CharacterParameter(
+            type="enum", request=Feel(mood="happy"), field="mood", choices=moods, about="How it feels."
+        ),
+        "weary": CharacterParameter(type="boolean", request=Feel(), field="mood", choices=off_on),
+        "eyes": CharacterParameter(type="enum", request=Look(), field="to", choices=places),
+        "attention": CharacterParameter(type="number", request=Look(), field="amount"),
+        "lamp": CharacterParameter(
+            type="point", request=Place(name="lamp", point=(1.0, 1.5, 0.5)), field="point"
+        ),
+        "partner": CharacterParameter(
+            type="point", request=Place(name="user", point=(0.0, 1.6, 1.2)), field="point"
+        ),
+        "posture": CharacterParameter(
+            type="enum", request=Go(layer="arms", stance=arms[0]), field="stance", choices=stances
+        ),
+        "signs": CharacterParameter(type="list", request=Gesture(), field="tags", choices=shown),
+        "greet": CharacterParameter(type="trigger", request=Gesture(tags=("greeting",))),
+    }
+    for name, parameter in made.items():
+        project = set_parameter(project, name, parameter)
+    return project
+
+
 @numbered_ids()
 def touching(project: Project) -> Project:
     """Return a project whose hands are kept on its body, on each other and out of both: in loops with and
@@ -430,8 +487,10 @@ def touching(project: Project) -> Project:
             times = np.linspace(start, end, 1 + n % 3)
             keys = tuple(_near(project, action, hand, to, float(t), chance) for t in times)
             part = (end - start) * (0.0, 0.2, 0.3)[n % 3]
-            first, last = start + part, end - part / 2
-            spans.append(ContactSpan(hand, "palm", to, first, last, keys, 0.2, 0.1 * (n % 2)))
+            first, last, ease_out = start + part, end - part / 2, 0.1 * (n % 2)
+            if n % 6 == 5:  # over before it has settled
+                first, last, ease_out, keys = start, start + 0.15, 0.05, keys[:1]
+            spans.append(ContactSpan(hand, "palm", to, first, last, keys, 0.2, ease_out))
         changes[action.id] = {"contacts": tuple(spans)}
     return replace(edits.update_each(project, changes), touch=Touch(True, True))
 
@@ -460,6 +519,14 @@ def varied() -> Project:
     project = with_morphs(stick("varied", MORPHS), MORPHS)
     crossed = next(s.id for s in project.graphs["arms"].stances.values() if s.name == "crossed")
     project = edits.rename_stance(project, crossed, "hand to chin")  # where the arms go in a thought
+    arms = {a.name: a.id for a in project.graphs["arms"].actions.values()}
+    project = edits.update_actions(
+        project, [arms["beat"], arms["lift"]], name="shrug"
+    )  # of one name the likeliest
+    project = edits.update_actions(project, [arms["scratch"]], name="point", likelihood=3.0)
+    project = edits.update_actions(
+        project, [arms["point"]], tags=("there", "question", "surprise", "angry", "warm")
+    )
     project = edits.set_settings(
         project,
         alpha=1.5,
@@ -511,17 +578,21 @@ def varied() -> Project:
         lip_smoothing=0.06,
         expressions=1.3,
         accent_brows=0.9,
-        modes={"idle": Manner(aversion_rate=0.5, blinks=2.0, breathing=0.5)},
+        modes={
+            "idle": Manner(aversion_rate=0.5, blinks=2.0, breathing=0.5),
+            "thinking": Manner(breath_rate=0.0),
+            "reacting": Manner(breath_rate=0.0),
+        },
     )
     return replace(edits.set_base(project, None), life=life)
 
 
 @numbered_ids()
-def standing() -> Project:
+def standing(rooted: bool = False) -> Project:
     """Return a project whose body has legs, and answers its arms: some of them moved by what the body plays,
-    too, one on knees that bend, in loops with a seam.
+    too, one on knees that bend, in loops with a seam. rooted: the hips have a joint above them.
     """
-    project = stick("standing", legs=True)
+    project = stick("standing", legs=True, rooted=rooted)
     body, arms = project.graphs["body"], project.graphs["arms"]
     stand, lean = body.stances
     shared = [a.clip for a in arms.actions.values() if a.kind == "gesture"]
@@ -553,7 +624,7 @@ def repeating(touch: bool = False) -> Project:
 
     touch: with a hand kept on the chest at two places, which makes the project "clasping".
     """
-    project = replace(standing(), name="clasping" if touch else "repeating")
+    project = replace(standing(rooted=True), name="clasping" if touch else "repeating")
     changes = {}
     for layer, kind, fields in (
         ("body", "gesture", {"repeat": 1.7}),
@@ -575,7 +646,12 @@ def repeating(touch: bool = False) -> Project:
             span = ContactSpan("right", "palm", "Chest", *times, keys, 0.2, 0.05)
             changes[action.id]["contacts"] = (span,)
     project = edits.update_each(project, changes)
-    return replace(project, touch=Touch(True, True)) if touch else project
+    if not touch:
+        return project
+    lifting = Life(
+        stillness=0.1, breath_rate=18.0, follow_through=0.0, shoulder_lift=1.8
+    )  # shoulders alone answer
+    return replace(project, touch=Touch(True, True), life=lifting)
 
 
 LEGS = tuple(f"{side}{part}" for side in ("Left", "Right") for part in ("UpperLeg", "LowerLeg", "Foot"))
@@ -588,7 +664,7 @@ def stepping(layer: Layer = "body") -> Project:
 
     layer: the one that moves the legs; the other than the body's is called "striding".
     """
-    b = Builder("stepping" if layer == "body" else "striding", legs=True)
+    b = Builder("stepping" if layer == "body" else "striding", legs=True, rooted=layer != "body")
     m = b.moves
     still, sway, apart = m.stance(0, ()), ("Spine", "Chest"), m.stance(2, LEGS, 0.09)
     loose = m.clip("sway", 11, 2.0, still, m.stance(6, LEGS, 0.03), sway, 0.05)  # its ends do not meet
@@ -597,7 +673,7 @@ def stepping(layer: Layer = "body") -> Project:
     turns = np.array(spread.rotations)
     turns[:, spread.skeleton.index("LeftFoot")] *= -1  # a quaternion and its negative are one rotation
     spread = replace(spread, rotations=turns)
-    wide = b.stance(layer, "wide", spread)
+    wide = b.stance(layer, "wide", spread, m.clip("wide, still", 16, 0.0, apart))
     for n, action in enumerate([*b.project.graphs[layer].of(stand, "stance")]):
         timing = replace(action.timing, blend_in=0.4 * n)
         b.project = edits.update_actions(b.project, [action.id], timing=timing, likelihood=1.0 + n)
@@ -611,9 +687,18 @@ def stepping(layer: Layer = "body") -> Project:
     b.act(layer, "gesture", stand, own)
     some = m.clip("some joints", 36, 1.6, m.stance(25, LEGS, 0.1), None, sway, 0.2)
     b.act(layer, "gesture", stand, some, joints=("Spine", "LeftUpperLeg"))
+    for n, more in enumerate(({"joints": ("LeftUpperLeg",)}, {"joint_weights": (("LeftUpperLeg", 0.5),)})):
+        one = m.clip(f"one joint {n}", 38 + n, 1.5, m.stance(27 + n, LEGS, 0.1), None, sway, 0.2)
+        b.act(layer, "gesture", stand, one, **more)
+    nearest = m.clip("nearest", 46, 1.5, m.stance(29, LEGS, 0.006), None, sway, 0.1)
+    b.act(layer, "gesture", stand, nearest)
+    sudden = m.clip("sudden", 37, 1.2, m.stance(26, LEGS, 0.08), None, sway, 0.2)
+    b.act(layer, "fidget", stand, sudden, timing={"blend_in": 0.0, "blend_out": 0.05})
     if layer != "body":
         b.project = edits.set_weight(b.project, layer, "legs", 1.0)
-        return replace(b.project, life=Life(breath_rate=18.0, planted_feet=0.9))
+        return replace(
+            b.project, life=Life(breath_rate=18.0, planted_feet=0.9, follow_through=0.0, shoulder_lift=0.0)
+        )
     sides = b.stance("arms", "at sides", m.clip("sides", 21, 1.9, m.stance(3, ARMS, 0.4), None, ARMS, 0.05))
     b.act("arms", "gesture", sides, m.clip("reach", 51, 1.5, m.stance(3, ARMS, 0.4), None, ARMS))
     b.project = edits.set_base(b.project, b.project.graphs[layer].of(stand, "stance")[0].clip, 0)

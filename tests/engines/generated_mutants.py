@@ -58,7 +58,7 @@ LANGUAGES = {
         ".js",
         (
             "character.js", "describe.js", "glb.js", "graph.js", "three.js", "index.js", "words.js",
-            "basics.js", "avatar", "element.js", "stage.js", "sounds.js", "meshopt",
+            "basics.js", "avatar", "react.js", "element.js", "stage.js", "sounds.js", "meshopt",
         ),
     ),
     "csharp": Language(
@@ -69,6 +69,7 @@ LANGUAGES = {
             "Graph.cs", "Json.cs", "Loading", "Meshopt", "SharedGraphs", "Basics.cs", "Language.cs",
             "LifeSettings.cs", "Clip.cs",
         ),
+        texts='@"(?:""|[^"])*"|' + Language.texts,
     ),
     "gdscript": Language(
         "godot/addons/metagraph",

@@ -465,9 +465,3 @@ def _draw(
         life, track, voices, seed, cut, drawn, 1.0 - life.stillness, modes.plus(times, rows),
         moods.plus(changes, wanted), tuple(targets),
     )  # fmt: skip
-
-
-def share(lane: Lane, start: float, end: float) -> float:
-    """Return events a minute between two times."""
-    count = bisect_left(lane.times, end) - bisect_left(lane.times, start)
-    return count / max(end - start, 1e-9) * 60.0

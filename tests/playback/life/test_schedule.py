@@ -19,7 +19,6 @@ from metagraph.playback.life.schedule import (
     DOUBLES,
     Schedule,
     schedule,
-    share,
 )
 from metagraph.playback.life.track import BlinkAt, LookAt, ModeFrom, PlaceFrom, Speech, Track, track_of
 from metagraph.playback.life.voice import Voice, guess_voice
@@ -31,6 +30,12 @@ HOUR = 3600.0
 
 def drawn(track: Track | None = None, end: float = 60.0, life: Life | None = None, seed: int = 1) -> Schedule:
     return schedule(life or Life(), track or Track(), {}, seed, end, Schedule(), 0.0)
+
+
+def share(lane: Lane, start: float, end: float) -> float:
+    """Events a minute between two times."""
+    count = int(np.sum((np.array(lane.times) >= start) & (np.array(lane.times) < end)))
+    return count / (end - start) * 60.0
 
 
 def trains(rate: float, seed: int = 0) -> dict[str, Voice]:

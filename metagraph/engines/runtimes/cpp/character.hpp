@@ -83,34 +83,17 @@ public:
     /// id of the request that this makes. A number outside of its range becomes the nearest inside, and what is set to the value that it
     /// has makes no request again. What cannot be set is refused.
     std::string set_parameter(const std::string& name, const Json& given = Json()) {
-        const Parameter* one = graph_->parameters.find(name);
-        if (one == nullptr) return refuse(made_id(), "name: there is no parameter '" + name + "'");
         std::string wrong;
-        const Json value = one->kept(given, wrong);
-        if (!wrong.empty()) return refuse(made_id(), "value: " + wrong);
-        if (one->type == "trigger") return ask(one->request);
-        const Json* before = set_.find(name);
-        if (before != nullptr && !before->empty() && parameters::same(*before, value)) return made_.at(name);
-        Json request = one->request;
-        request.set(one->field, one->filled(value));
-        for (const std::string& word : one->beside) {
-            const Parameter* other = graph_->parameters.find(word);
-            const Json* had = set_.find(word);
-            if (other != nullptr && had != nullptr && !had->empty()) request.set(other->field, other->filled(*had));
-        }
-        for (const std::string& other : one->replaces) set_.set(other, Json()); // they are bound to the same
-        set_.set(name, value);
-        const std::string id = ask(request);
-        made_[name] = id;
+        const std::optional<Json> request = values_.take(graph_->parameters, name, given, wrong);
+        if (!wrong.empty()) return refuse(made_id(), wrong);
+        if (!request.has_value()) return values_.made.at(name);
+        const std::string id = ask(*request);
+        values_.made[name] = id;
         return id;
     }
 
     /// The value that a parameter was set to, else its first one; nothing for a trigger, and where there is none of that name.
-    Json get_parameter(const std::string& name) const {
-        const Parameter* one = graph_->parameters.find(name);
-        const Json* value = set_.find(name);
-        return one == nullptr ? Json() : value != nullptr && !value->empty() ? *value : one->initial;
-    }
+    Json get_parameter(const std::string& name) const { return values_.get(graph_->parameters, name); }
 
     /// Say a line of the export, or any text.
     std::string say_line(const std::string& line) { return ask(Json::object({{"do", "say"}, {"line", line}})); }
@@ -219,8 +202,7 @@ private:
     Set<std::string> asked_; // ids that the plan can tell of
     List<std::pair<std::string, StreamedVoice>> sounds_; // of lines that are heard, the oldest first
     List<Answer> settled_; // of those it has forgotten or never heard of
-    Json set_ = Json::object(); // what parameters were set to
-    Map<std::string, std::string> made_; // the ids of their latest requests
+    ParameterValues values_;
     List<double> weights_;
     List<Happening> happened_;
     int count_ = 0;

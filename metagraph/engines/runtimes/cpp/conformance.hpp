@@ -5,6 +5,8 @@
 #include <iterator>
 
 #include "metagraph.hpp"
+#include "spoken_so_far.hpp"
+#include "sympathy.hpp"
 
 namespace metagraph {
 
@@ -151,27 +153,72 @@ void compare_pose(
     }
 }
 
-/// Return the plan that a case's steps make.
-inline Ref<const Plan> planned(const Graph& graph, const Json& one) {
+/// Looks at what is said: after each step of a case, and later.
+struct Watch {
+    SpeechWatch speech;
+    double seen = -1.0;
+    List<std::string> said;
+    Json rows = Json::list();
+
+    void look(const Plan& plan, double now, const List<Json>& asks) {
+        auto maybe = [](const std::optional<double>& seconds) {
+            return seconds.has_value() && *seconds <= 1e8 ? Json(*seconds) : Json();
+        };
+        const List<Ref<Speech>>& speeches = plan.track->speeches;
+        Json events = Json::list(), spoken = Json::list(), answers = Json::list();
+        List<std::string> ids;
+        for (const Json& ask : asks) {
+            const std::string& id = ask.find("id")->text;
+            if (ask.find("do")->text == "say" && !lang::contains(said, id)) said.push_back(id);
+            if (!lang::contains(ids, id)) ids.push_back(id);
+        }
+        for (const std::string& id : ids) {
+            const Answer told = hearing::answer(id, plan);
+            answers.items.push_back(Json::list({id, told.state, maybe(told.at), maybe(told.until), Json::texts(told.what)}));
+        }
+        for (const std::string& id : said) {
+            const auto [text, last] = spoken_so_far::spoken_until(voice::alphabet(), speeches, id, now);
+            if (!text.empty()) spoken.items.push_back(Json::list({id, text, last}));
+        }
+        for (const auto& e : speech.watch(speeches, seen, now)) {
+            events.items.push_back(Json::list({e->kind, e->at, e->id, e->said, e->reason}));
+        }
+        rows.items.push_back(Json::object({
+            {"now", now}, {"events", events}, {"spoken", spoken},
+            {"silent", Json::texts(utterances::find_forgotten(plan.track, now))}, {"answers", answers},
+        }));
+        seen = now;
+    }
+};
+
+/// Return the plan that a case's steps make. watch: what looks on, where the case wants that.
+inline Ref<const Plan> planned(const Graph& graph, const Json& one, Watch* watch = nullptr) {
+    const Json* watched = watch == nullptr ? nullptr : one.find("watched");
     PlanOptions options;
     options.idle = one.find("idle")->flag;
     for (const auto& [layer, stance] : one.find("stances")->fields) options.stances[layer] = stance.text;
     Ref<const Plan> plan = lang::made<Plan>(static_cast<std::uint32_t>(one.find("seed")->number));
     for (const Json& step : one.find("steps")->items) {
         plan = hear(graph, *plan, step.find("now")->number, step.find("asks")->items, step.find("end")->number, options);
+        if (watched != nullptr) watch->look(*plan, step.find("now")->number, step.find("asks")->items);
         if (!step.find("forget")->empty()) plan = since(*plan, step.find("forget")->number);
+    }
+    for (std::size_t n = one.find("steps")->items.size(); watched != nullptr && n < watched->items.size(); n++) {
+        watch->look(*plan, watched->items[n].find("now")->number, {});
     }
     return plan;
 }
 
 template <class Tell>
 void run_case(const Ref<const Graph>& graph, const Json& one, const Json& tolerance, Tell tell) {
-    const Ref<const Plan> plan = planned(*graph, one);
+    Watch watch;
+    const Ref<const Plan> plan = planned(*graph, one, &watch);
     const double seconds = tolerance.find("seconds")->number;
     auto same = [&](const std::string& where, const Json& found, const Json& wanted) {
         const std::string told = difference(found, wanted, seconds, where);
         if (!told.empty()) tell(told);
     };
+    if (one.find("watched") != nullptr) same("watched", watch.rows, *one.find("watched"));
     const Json& wanted = *one.find("plan");
     for (const std::string& layer : graph::LAYERS) {
         same(layer, layer_data(*plan->layers.at(layer)), *wanted.find("layers")->find(layer));
@@ -216,6 +263,49 @@ inline Json talk_of(const Json& row) {
         asks.items.push_back(Json::list({ask->do_, ask->layer, Json::texts(ask->tags), ask->at, Json::maybe(ask->stroke), ask->late}));
     }
     return Json::object({{"sentences", sentences}, {"words", words}, {"asks", asks}});
+}
+
+/// What is taken up of another's moods, and whose laughs are joined in.
+inline Json sympathies_of(const Json& row) {
+    auto told = [&row](const char* name) {
+        List<Ref<MoodFrom>> out;
+        for (const Json& one : row.find(name)->items) {
+            const List<Json>& x = one.items;
+            out.push_back(lang::made<MoodFrom>("told", x[0].number, x[1].number, x[2].number, std::nullopt, x[3].number));
+        }
+        return out;
+    };
+    auto data = [](const List<Ref<MoodFrom>>& moods) {
+        Json out = Json::list();
+        for (const auto& m : moods) out.items.push_back(Json::list({m->id, m->start, *m->valence, *m->arousal, m->end}));
+        return out;
+    };
+    const List<Json>& base = row.find("base")->items;
+    const auto own = lang::made<Moods>(lang::made<Mood>(base[0].number, base[1].number, base[2].number), told("own"));
+    const auto others = lang::made<Moods>(lang::made<Mood>(), told("others"));
+    List<Ref<Laugh>> laughs;
+    for (const Json& one : row.find("laughs")->items) laughs.push_back(lang::made<Laugh>(one.items[0].number, one.items[1].number));
+    const double share = row.find("share")->number;
+    const auto seed = static_cast<std::uint32_t>(row.find("seed")->number);
+    const std::string& who = row.find("who")->text;
+    return Json::list({
+        data(sympathy::moods_taken_up(own, others, row.find("end")->number, share, seed, who)),
+        data(sympathy::laughs_along(own, laughs, share, seed, who)),
+    });
+}
+
+/// What becomes of setting parameters one after another: the request, what is wrong, and the values of all then.
+inline Json settings_of(const Graph& graph, const Json& rows) {
+    ParameterValues values;
+    Json out = Json::list();
+    for (const Json& row : rows.items) {
+        std::string wrong;
+        const std::optional<Json> request = values.take(graph.parameters, row.find("name")->text, *row.find("value"), wrong);
+        Json now = Json::object();
+        for (const auto& [name, one] : graph.parameters) now.set(name, values.get(graph.parameters, name));
+        out.items.push_back(Json::list({request.value_or(Json()), wrong, now}));
+    }
+    return out;
 }
 
 /// Run the vectors of a folder.
@@ -266,8 +356,10 @@ inline Verdict run(const std::string& folder) {
         before = out.failures.size();
         for (const Json& sound : vectors.find("heard")->items) {
             StreamedVoice voice(sound.find("rate")->number);
-            Json found = Json::list({});
-            for (const Json& piece : sound.find("pieces")->items) {
+            Json found = Json::list({}), seconds = Json::list({});
+            for (std::size_t n = 0; n < sound.find("pieces")->items.size(); n++) {
+                const Json& piece = sound.find("pieces")->items[n];
+                voice.follow(sound.find("said")->items[n].number);
                 List<double> samples;
                 for (const Json& sample : piece.items) samples.push_back(sample.number / 128.0);
                 Json marks = Json::list({});
@@ -275,8 +367,10 @@ inline Verdict run(const std::string& folder) {
                     marks.items.push_back(Json::list({mark->at, mark->viseme, mark->weight}));
                 }
                 found.items.push_back(marks);
+                seconds.items.push_back(voice.seconds);
             }
-            const std::string told = difference(found, *sound.find("marks"), tolerance.find("seconds")->number, "heard");
+            const Json wanted = Json::list({*sound.find("marks"), *sound.find("seconds")});
+            const std::string told = difference(Json::list({found, seconds}), wanted, tolerance.find("seconds")->number, "heard");
             if (!told.empty()) failed("heard", told);
         }
         done(before);
@@ -290,6 +384,25 @@ inline Verdict run(const std::string& folder) {
             const std::string told = difference(talk_of(row), wanted, tolerance.find("seconds")->number, "talked");
             if (!told.empty()) failed("talked", told);
         }
+        done(before);
+    }
+    if (vectors.find("sympathies") != nullptr) {
+        before = out.failures.size();
+        for (const Json& row : vectors.find("sympathies")->items) {
+            const Json wanted = Json::list({*row.find("taken"), *row.find("along")});
+            const std::string told = difference(sympathies_of(row), wanted, tolerance.find("seconds")->number, "sympathies");
+            if (!told.empty()) failed("sympathies", told);
+        }
+        done(before);
+    }
+    if (const Json* settings = vectors.find("settings")) {
+        before = out.failures.size();
+        Json wanted = Json::list();
+        for (const Json& row : settings->items) {
+            wanted.items.push_back(Json::list({*row.find("request"), *row.find("wrong"), *row.find("now")}));
+        }
+        const std::string told = difference(settings_of(*loaded.graph, *settings), wanted, tolerance.find("seconds")->number, "settings");
+        if (!told.empty()) failed("settings", told);
         done(before);
     }
     for (const Json& one : vectors.find("cases")->items) {

@@ -130,4 +130,44 @@ inline bool same(const Json& a, const Json& b) {
 }
 
 }  // namespace parameters
+
+/// The values that a character's parameters were set to. made: the ids of their latest requests.
+struct ParameterValues {
+    Json set = Json::object();
+    Map<std::string, std::string> made;
+
+    /// The value of a parameter; nothing for a trigger, and where there is none of that name.
+    Json get(const Map<std::string, Parameter>& parameters, const std::string& name) const {
+        const Parameter* one = parameters.find(name);
+        const Json* value = set.find(name);
+        return one == nullptr ? Json() : value != nullptr && !value->empty() ? *value : one->initial;
+    }
+
+    /// Set a parameter; returns the request that this makes, none where it has the value already. `wrong` says what cannot be set,
+    /// "" where nothing is wrong.
+    std::optional<Json> take(
+        const Map<std::string, Parameter>& parameters, const std::string& name, const Json& given, std::string& wrong
+    ) {
+        const Parameter* one = parameters.find(name);
+        wrong = one == nullptr ? "name: there is no parameter '" + name + "'" : "";
+        if (one == nullptr) return std::nullopt;
+        const Json value = one->kept(given, wrong);
+        if (!wrong.empty()) wrong = "value: " + wrong;
+        if (!wrong.empty()) return std::nullopt;
+        if (one->type == "trigger") return one->request;
+        const Json* before = set.find(name);
+        if (before != nullptr && !before->empty() && parameters::same(*before, value)) return std::nullopt;
+        Json request = one->request;
+        request.set(one->field, one->filled(value));
+        for (const std::string& word : one->beside) {
+            const Parameter* other = parameters.find(word);
+            const Json* had = set.find(word);
+            if (other != nullptr && had != nullptr && !had->empty()) request.set(other->field, other->filled(*had));
+        }
+        for (const std::string& other : one->replaces) set.set(other, Json()); // they are bound to the same
+        set.set(name, value);
+        return request;
+    }
+};
+
 }  // namespace metagraph

@@ -81,7 +81,6 @@ inline Ref<LifeDraw> _draw(
     double drawn,
     const Ref<Schedule>& before
 );
-inline double share(const Ref<Lane>& lane, double start, double end);
 
 }  // namespace schedule
 
@@ -760,12 +759,6 @@ inline Ref<LifeDraw> _draw(
         moods->plus(changes, wanted),
         targets
     );
-}
-
-/// Return events a minute between two times.
-inline double share(const Ref<Lane>& lane, double start, double end) {
-    int count = lang::bisect_left(lane->times, end) - lang::bisect_left(lane->times, start);
-    return lang::divided(count, std::max(end - start, 1e-09)) * 60.0;
 }
 
 }  // namespace schedule

@@ -5,9 +5,18 @@
 
 import { LAYERS, StreamedVoice, describe, emptyPlan, hear, key32, keyOf, load, morphsAt, poseAt, since } from "./index.js";
 import { ALPHABET } from "./alphabet.js";
+import { answers } from "./hear.js";
+import { Mood, MoodFrom, Moods } from "./mood.js";
+import { Parameters } from "./parameters.js";
 import { positions } from "./rotation.js";
+import { SpeechWatch } from "./speech_watch.js";
+import { spokenUntil } from "./spoken_so_far.js";
+import { Laugh, laughsAlong, moodsTakenUp } from "./sympathy.js";
 import { lexiconOf } from "./talk.js";
+import { findForgotten } from "./utterances.js";
 import { ToldWord, gestureAsks, proposedFor, sentenceEnd, wordsOf } from "./word_gestures.js";
+
+const BESIDE = ["described", "heard", "talked", "sympathies", "settings"]; // what vectors have beside cases
 
 /**
  * @param {object} vectors the content of vectors.json @param {string} exportJson @param {Uint8Array | ArrayBuffer} glbBytes
@@ -35,10 +44,13 @@ export function runVectors(vectors, exportJson, glbBytes) {
   if (vectors.described) run("described", (fail) => compare("described", describe(graph), vectors.described, vectors.tolerance.seconds, fail));
   if (vectors.heard) {
     run("heard", (fail) => {
-      for (const { rate, pieces, marks } of vectors.heard) {
+      for (const { rate, pieces, said, marks, seconds } of vectors.heard) {
         const voice = new StreamedVoice(rate);
-        const found = pieces.map((piece) => voice.hear(piece.map((x) => x / 128)).map(({ at, viseme, weight }) => [at, viseme, weight]));
-        compare("heard", found, marks, vectors.tolerance.seconds, fail);
+        const found = pieces.map((piece, n) => {
+          voice.follow(said[n]);
+          return [voice.hear(piece.map((x) => x / 128)).map(({ at, viseme, weight }) => [at, viseme, weight]), voice.seconds];
+        });
+        compare("heard", found, marks.map((one, n) => [one, seconds[n]]), vectors.tolerance.seconds, fail);
       }
     });
   }
@@ -48,6 +60,20 @@ export function runVectors(vectors, exportJson, glbBytes) {
         const { sentences, words, asks } = row;
         compare(`talked[${n}]`, talkOf(row), { sentences, words, asks }, vectors.tolerance.seconds, fail);
       });
+    });
+  }
+  if (vectors.sympathies) {
+    run("sympathies", (fail) => {
+      for (const row of vectors.sympathies) {
+        compare("sympathies", sympathiesOf(row), [row.taken, row.along], vectors.tolerance.seconds, fail);
+      }
+    });
+  }
+  if (vectors.settings) {
+    run("settings", (fail) => {
+      const parameters = new Parameters(graph.parameters);
+      const found = vectors.settings.map(({ name, value }) => setOf(parameters, name, value));
+      compare("settings", found, vectors.settings.map(({ request, wrong, now }) => [request, wrong, now]), vectors.tolerance.seconds, fail);
     });
   }
   for (const each of vectors.cases) run(each.name, (fail) => runCase(graph, each, vectors.tolerance, fail));
@@ -72,12 +98,60 @@ function talkOf({ language, text, seconds, told, seed, at, arms, head }) {
   };
 }
 
-function runCase(graph, { seed, idle, stances, steps, plan: expected, life, poses }, tolerance, fail) {
+/** What is taken up of another's moods, and whose laughs are joined in. */
+function sympathiesOf({ base, own, others, laughs, end, share, seed, who }) {
+  const told = (rows) => rows.map(([start, valence, arousal, until]) => new MoodFrom("told", start, valence, arousal, null, until));
+  const mine = new Moods(new Mood(...base), told(own));
+  const taken = moodsTakenUp(mine, new Moods(new Mood(), told(others)), end, share, seed, who);
+  const along = laughsAlong(mine, laughs.map(([start, until]) => new Laugh(start, until)), share, seed, who);
+  return [taken, along].map((moods) => moods.map((m) => [m.id, m.start, m.valence, m.arousal, m.end]));
+}
+
+/** The request that setting a parameter makes, what is wrong with it, and the values of all then. */
+function setOf(parameters, name, value) {
+  let [request, wrong] = [null, ""];
+  const ask = (data) => {
+    request = data;
+    return name;
+  };
+  parameters.set(name, value, ask, (why) => {
+    wrong = why;
+  });
+  return [request, wrong, Object.fromEntries(Object.keys(parameters.exported).map((each) => [each, parameters.get(each)]))];
+}
+
+/** Look at what is said: after each step of a case, and later. */
+class Watch {
+  speech = new SpeechWatch();
+  seen = -1;
+  said = [];
+  rows = [];
+
+  look(plan, now, asks) {
+    const { speeches } = plan.track;
+    for (const ask of asks) if (ask.do === "say" && !this.said.includes(ask.id)) this.said.push(ask.id);
+    const maybe = (seconds) => (seconds === null || seconds > 1e8 ? null : seconds);
+    this.rows.push({
+      now,
+      events: this.speech.watch(speeches, this.seen, now).map((e) => [e.kind, e.at, e.id, e.said, e.reason]),
+      spoken: this.said.map((id) => [id, ...spokenUntil(ALPHABET, speeches, id, now)]).filter(([, text]) => text !== ""),
+      silent: findForgotten(plan.track, now),
+      answers: [...answers(plan, asks.map((ask) => ask.id)).values()].map((a) => [a.id, a.state, maybe(a.at), maybe(a.until), a.what]),
+    });
+    this.seen = now;
+  }
+}
+
+function runCase(graph, { seed, idle, stances, steps, plan: expected, life, poses, watched = [] }, tolerance, fail) {
   let plan = emptyPlan(seed);
+  const watch = new Watch();
   for (const { now, end, asks, forget } of steps) {
     plan = hear(graph, plan, now, asks, end, { stances, idle });
+    if (watched.length) watch.look(plan, now, asks);
     if (forget !== null) plan = since(plan, forget);
   }
+  for (const { now } of watched.slice(steps.length)) watch.look(plan, now, []);
+  compare("watched", watch.rows, watched, tolerance.seconds, fail);
   const same = (where, found, wanted) => compare(where, found, wanted, tolerance.seconds, fail);
   for (const layer of LAYERS) {
     const found = plan.layers[layer];
@@ -172,7 +246,7 @@ if (typeof process !== "undefined" && process.argv[1] && import.meta.url.endsWit
     const json = readFileSync(join(folder, vectors.export), "utf8");
     const { passed, failures } = runVectors(vectors, json, readFileSync(join(folder, JSON.parse(json).glb)));
     for (const { case: name, what } of failures) console.log(`${folder}: ${name}: ${what}`);
-    console.log(`${folder}: ${passed} of ${vectors.cases.length + 1 + ("described" in vectors) + ("heard" in vectors) + ("talked" in vectors)} cases pass`);
+    console.log(`${folder}: ${passed} of ${vectors.cases.length + 1 + BESIDE.filter((name) => name in vectors).length} cases pass`);
     failed += failures.length;
   }
   process.exit(failed ? 1 : 0);

@@ -558,15 +558,3 @@ function _draw(life, track, voices, seed, cut, drawn, before) {
     [...targets],
   );
 }
-
-/**
- * Return events a minute between two times.
- * @param {Lane} lane
- * @param {number} start
- * @param {number} end
- * @returns {number}
- */
-export function share(lane, start, end) {
-  const count = bisectLeft(lane.times, end) - bisectLeft(lane.times, start);
-  return count / Math.max(end - start, 1e-09) * 60;
-}

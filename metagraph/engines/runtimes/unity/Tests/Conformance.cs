@@ -66,17 +66,28 @@ public static class Conformance
         foreach (JsonObject sound in vectors.Has("heard") ? List(vectors["heard"]) : new List<object>())
         {
             var voice = new StreamedVoice(Number(sound["rate"]));
-            var found = new List<object>();
-            foreach (List<object> piece in List(sound["pieces"]))
+            List<object> found = new List<object>(), heard = new List<object>(), pieces = List(sound["pieces"]);
+            for (int n = 0; n < pieces.Count; n++)
             {
-                List<VisemeMark> marks = voice.Hear(piece.Select(x => Number(x) / 128.0).ToList());
-                found.Add(marks.Select(m => (object)new List<object> { m.At, m.Viseme, m.Weight }).ToList());
+                voice.Follow(Number(List(sound["said"])[n]));
+                List<VisemeMark> marks = voice.Hear(List(pieces[n]).Select(x => Number(x) / 128.0).ToList());
+                found.Add(marks.Select(m => (object)Row(m.At, m.Viseme, m.Weight)).ToList());
+                heard.Add(voice.Seconds);
             }
-            Compare(folder + ", heard", found, sound["marks"]);
+            Compare(folder + ", heard", Row(found, heard), Row(sound["marks"], sound["seconds"]));
         }
         foreach (JsonObject row in vectors.Has("talked") ? List(vectors["talked"]) : new List<object>())
         {
             Compare(folder + ", talked", TalkOf(row), Fields("sentences", row["sentences"], "words", row["words"], "asks", row["asks"]));
+        }
+        foreach (JsonObject row in vectors.Has("sympathies") ? List(vectors["sympathies"]) : new List<object>())
+        {
+            Compare(folder + ", sympathies", SympathiesOf(row), Row(row["taken"], row["along"]));
+        }
+        var values = new ParameterValues(graph.Parameters);
+        foreach (JsonObject row in vectors.Has("settings") ? List(vectors["settings"]) : new List<object>())
+        {
+            Compare(folder + ", settings", SetOf(graph, values, row), Row(row["request"], row["wrong"], row["now"]));
         }
         foreach (JsonObject one in List(vectors["cases"]))
         {
@@ -113,6 +124,87 @@ public static class Conformance
                 ask.Do, ask.Layer, new List<object>(ask.Tags), ask.At, (object)ask.Stroke, ask.Late)).ToList());
     }
 
+    /// <summary>What is taken up of another's moods, and whose laughs are joined in.</summary>
+    private static object SympathiesOf(JsonObject row)
+    {
+        Func<string, List<MoodFrom>> told = name => List(row[name]).Select(List).Select(
+            x => new MoodFrom("told", Number(x[0]), Number(x[1]), Number(x[2]), null, Number(x[3]))).ToList();
+        Func<List<MoodFrom>, object> data = moods => moods.Select(m => (object)Row(m.Id, m.Start, m.Valence, m.Arousal, m.End)).ToList();
+        List<double> at = List(row["base"]).ConvertAll(Number);
+        var own = new Moods(new Mood(at[0], at[1], at[2]), told("own"));
+        var others = new Moods(new Mood(), told("others"));
+        List<Laugh> laughs = List(row["laughs"]).Select(List).Select(x => new Laugh(Number(x[0]), Number(x[1]))).ToList();
+        double share = Number(row["share"]);
+        uint seed = (uint)Number(row["seed"]);
+        var who = (string)row["who"];
+        return Row(
+            data(SympathyRules.MoodsTakenUp(own, others, Number(row["end"]), share, seed, who)),
+            data(SympathyRules.LaughsAlong(own, laughs, share, seed, who)));
+    }
+
+    /// <summary>The request that setting a parameter makes, what is wrong with it, and the values of all then.</summary>
+    private static object SetOf(Graph graph, ParameterValues values, JsonObject row)
+    {
+        object request = null;
+        string wrong = "";
+        var name = (string)row["name"];
+        try
+        {
+            values.Set(name, row["value"], json =>
+            {
+                request = Json.Parse(json);
+                return name;
+            });
+        }
+        catch (AskException problem)
+        {
+            wrong = problem.Message;
+        }
+        var now = new JsonObject();
+        graph.Parameters.Keys.ToList().ForEach(each => now[each] = values.Get(each));
+        return Row(request, wrong, now);
+    }
+
+    /// <summary>Looks at what is said: after each step of a case, and later.</summary>
+    private sealed class Watch
+    {
+        public readonly List<object> Rows = new List<object>();
+        private readonly SpeechWatch speech = new SpeechWatch();
+        private readonly List<string> said = new List<string>();
+        private double seen = -1.0;
+
+        public void Look(Plan plan, double now, List<object> asks)
+        {
+            List<Speech> speeches = plan.Track.Speeches;
+            List<string> ids = asks.Select(ask => (string)((JsonObject)ask)["id"]).ToList();
+            for (int n = 0; n < ids.Count; n++)
+            {
+                if ((string)((JsonObject)asks[n])["do"] == "say" && !said.Contains(ids[n]))
+                {
+                    said.Add(ids[n]);
+                }
+            }
+            var spoken = new List<object>();
+            foreach (string id in said)
+            {
+                (string text, string last) = SpokenSoFarRules.SpokenUntil(Alphabet.Common, speeches, id, now);
+                if (text.Length > 0)
+                {
+                    spoken.Add(Row(id, text, last));
+                }
+            }
+            Func<double?, object> maybe = seconds => seconds == null || seconds > 1e8 ? null : (object)seconds;
+            Rows.Add(Fields(
+                "now", now,
+                "events", speech.Watch(speeches, seen, now).Select(e => (object)Row(e.Kind, e.At, e.Id, e.Said, e.Reason)).ToList(),
+                "spoken", spoken,
+                "silent", UtterancesRules.FindForgotten(plan.Track, now).Cast<object>().ToList(),
+                "answers", Hearing.Answers(plan, ids.Distinct().ToList()).Select(
+                    a => (object)Row(a.Id, a.State, maybe(a.At), maybe(a.Until), a.What.Cast<object>().ToList())).ToList()));
+            seen = now;
+        }
+    }
+
     private static void Case(string where, Graph graph, JsonObject one)
     {
         var stances = new Dictionary<string, string>();
@@ -122,14 +214,25 @@ public static class Conformance
         }
         Plan plan = Plan.Empty((uint)Number(one["seed"]));
         var unread = new List<Report>();
+        List<object> watched = one.Has("watched") ? List(one["watched"]) : new List<object>();
+        var watch = new Watch();
         foreach (JsonObject step in List(one["steps"]))
         {
             double now = Number(step["now"]);
             List<Ask> asks = Readable(step, now > 0 ? now + graph.Settings.Lookahead : 0, unread);
             plan = Hearing.Hear(graph, plan, now, asks, Number(step["end"]), stances, (bool)one["idle"]);
+            if (watched.Count > 0)
+            {
+                watch.Look(plan, now, List(step["asks"]));
+            }
             plan = step["forget"] == null ? plan : Hearing.Since(plan, Number(step["forget"]));
         }
+        foreach (JsonObject row in watched.Skip(List(one["steps"]).Count))
+        {
+            watch.Look(plan, Number(row["now"]), new List<object>());
+        }
         int before = failures;
+        Compare(where + ", watched", watch.Rows, watched);
         var expected = (JsonObject)one["plan"];
         Compare(where + ", plan", PlanData(plan), expected["layers"]);
         Compare(where + ", reports", Reports(plan, unread), expected["reports"]);

@@ -7,15 +7,22 @@ extends SceneTree
 
 const CORE = "res://addons/metagraph/core/"
 const VERSION = 1
+const Answers = preload("core/answers.gd")
 const Choice = preload("core/choice.gd")
 const Graph = preload("core/graph.gd")
 const Asks = preload("core/asks.gd")
 const Describe = preload("core/describe.gd")
 const Hear = preload("core/hear.gd")
+const Mood = preload("core/mood.gd")
+const Parameters = preload("core/parameters.gd")
 const Planner = preload("core/planner.gd")
 const Pose = preload("core/pose.gd")
+const SpeechWatch = preload("core/speech_watch.gd")
+const SpokenSoFar = preload("core/spoken_so_far.gd")
 const StreamedVoice = preload("core/streamed_voice.gd")
+const Sympathy = preload("core/sympathy.gd")
 const Util = preload("core/util.gd")
+const Utterances = preload("core/utterances.gd")
 const Turns = preload("core/turns.gd")
 const Talk = preload("core/talk.gd")
 const WordGestures = preload("core/word_gestures.gd")
@@ -91,15 +98,18 @@ func _check(folder, only):
 	for sound in data.get("heard", []):
 		var voice = StreamedVoice.StreamedVoice.new(float(sound.rate))
 		var marks = []
-		for piece in sound.pieces:
+		var seconds = []
+		for n in range(sound.pieces.size()):
+			voice.follow(sound.said[n])
 			var samples = []
-			for sample in piece:
+			for sample in sound.pieces[n]:
 				samples.append(sample / 128.0)
 			var told = []
 			for mark in voice.hear(samples):
 				told.append([mark.at, mark.viseme, mark.weight])
 			marks.append(told)
-		var apart = _unlike(marks, sound.marks, "heard", data.tolerance.seconds)
+			seconds.append(voice.seconds)
+		var apart = _unlike([marks, seconds], [sound.marks, sound.seconds], "heard", data.tolerance.seconds)
 		if apart != "":
 			_fail("heard", apart)
 	for row in data.get("talked", []):
@@ -107,6 +117,19 @@ func _check(folder, only):
 		var apart = _unlike(_talk_of(graph.alphabet, row), wanted, "talked", data.tolerance.seconds)
 		if apart != "":
 			_fail("talked", apart)
+	for row in data.get("sympathies", []):
+		var apart = _unlike(_sympathies_of(row), [row.taken, row.along], "sympathies", data.tolerance.seconds)
+		if apart != "":
+			_fail("sympathies", apart)
+	var parameters = Parameters.new(graph.parameters)
+	for row in data.get("settings", []):
+		var made = parameters.request_for(row.name, row.value)
+		var now = {}
+		for name in graph.parameters:
+			now[name] = parameters.value_of(name)
+		var apart = _unlike([made[0], made[1], now], [row.request, row.wrong, row.now], "settings", data.tolerance.seconds)
+		if apart != "":
+			_fail("settings", apart)
 	for case in data.cases:
 		if only != "" and case.name.find(only) < 0:
 			continue
@@ -144,6 +167,60 @@ func _talk_of(alphabet, row):
 	return {"sentences": sentences, "words": words, "asks": asks}
 
 
+# Returns what is taken up of another's moods, and whose laughs are joined in.
+func _sympathies_of(row):
+	var own = Mood.Moods.new(Mood.Mood.new(row.base[0], row.base[1], row.base[2]), _told_of(row.own))
+	var others = Mood.Moods.new(Mood.Mood.new(), _told_of(row.others))
+	var laughs = []
+	for one in row.laughs:
+		laughs.append(Sympathy.Laugh.new(one[0], one[1]))
+	var out = []
+	for moods in [
+		Sympathy.moods_taken_up(own, others, row.end, row.share, int(row["seed"]), row.who),
+		Sympathy.laughs_along(own, laughs, row.share, int(row["seed"]), row.who)
+	]:
+		var rows = []
+		for m in moods:
+			rows.append([m.id, m.start, m.valence, m.arousal, m.end])
+		out.append(rows)
+	return out
+
+
+func _told_of(rows):
+	var out = []
+	for x in rows:
+		out.append(Mood.MoodFrom.new("told", x[0], x[1], x[2], null, x[3]))
+	return out
+
+
+# Looks at what is said: after a step of a case, or later. watch: what was seen so far.
+func _look(watch, graph, plan, now, asks):
+	var speeches = plan.track.speeches
+	var ids = []
+	for ask in asks:
+		ids.append(ask.id)
+		if ask.do == "say" and not watch.said.has(ask.id):
+			watch.said.append(ask.id)
+	var spoken = []
+	for id in watch.said:
+		var told = SpokenSoFar.spoken_until(graph.alphabet, speeches, id, now)
+		if told[0] != "":
+			spoken.append([id, told[0], told[1]])
+	var events = []
+	for e in watch.speech.watch(speeches, watch.seen, now):
+		events.append([e.kind, e.at, e.id, e.said, e.reason])
+	var answers = []
+	for a in Answers.answers(plan, ids).values():
+		answers.append([a.id, a.state, _maybe(a.at), _maybe(a.until), a.what])
+	var silent = Utterances.find_forgotten(plan.track, now)
+	watch.rows.append({now = now, events = events, spoken = spoken, silent = silent, answers = answers})
+	watch.seen = now
+
+
+func _maybe(seconds):
+	return null if seconds == null or seconds > 1e8 else seconds
+
+
 func _micros():
 	return _shim.micros()
 
@@ -152,6 +229,8 @@ func _micros():
 func _differences(graph, case, tolerance):
 	var plan = Planner.empty_plan(int(case["seed"]))
 	var unread = []
+	var watched = case.get("watched", [])
+	var watch = {speech = SpeechWatch.SpeechWatch.new(), seen = -1.0, said = [], rows = []}
 	for step in case.steps:
 		var asks = []
 		for data in step.asks:
@@ -164,11 +243,17 @@ func _differences(graph, case, tolerance):
 				asks.append(ask[0])
 		var begun = _micros()
 		plan = Hear.hear(graph, plan, step.now, asks, step.end, case.stances, case.idle)
+		if watched.size() > 0:
+			_look(watch, graph, plan, step.now, step.asks)
 		if step.forget != null:
 			plan = Planner.since(plan, step.forget)
 		_planned += _micros() - begun
 		_steps += 1
-	var wrong = _unlike(_plan_data(plan, unread), case.plan, "plan", tolerance.seconds)
+	for n in range(case.steps.size(), watched.size()):
+		_look(watch, graph, plan, watched[n].now, [])
+	var wrong = _unlike(watch.rows, watched, "watched", tolerance.seconds)
+	if wrong == "":
+		wrong = _unlike(_plan_data(plan, unread), case.plan, "plan", tolerance.seconds)
 	if wrong == "":
 		wrong = _unlike(_life_data(plan.life, case.life), case.life, "life", tolerance.seconds)
 	for expected in case.poses:

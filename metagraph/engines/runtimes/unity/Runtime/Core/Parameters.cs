@@ -145,7 +145,7 @@ namespace Metagraph
     }
 
     /// <summary>The values that a character's parameters were set to.</summary>
-    internal sealed class ParameterValues
+    public sealed class ParameterValues
     {
         private readonly Dictionary<string, Parameter> parameters;
         private readonly Dictionary<string, object> values = new Dictionary<string, object>();

@@ -715,12 +715,5 @@ namespace Metagraph
                 targets.ToList()
             );
         }
-
-        /// <summary>Return events a minute between two times.</summary>
-        public static double Share(Lane lane, double start, double end)
-        {
-            var count = PlainLists.Left(lane.Times, end) - PlainLists.Left(lane.Times, start);
-            return ((double)count / Math.Max(end - start, 1e-09)) * 60.0;
-        }
     }
 }

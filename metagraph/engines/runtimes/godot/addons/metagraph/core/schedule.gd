@@ -571,9 +571,3 @@ static func _draw(life, track, voices, seed_, cut, drawn, before):
 		moods.plus(changes, wanted),
 		Util.list(targets)
 	)
-
-
-# Return events a minute between two times.
-static func share(lane, start, end):
-	var count = Util.left_of(lane.times, end) - Util.left_of(lane.times, start)
-	return (float(count) / Util.most(end - start, 1e-09)) * 60.0
