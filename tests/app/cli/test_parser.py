@@ -121,7 +121,7 @@ def test_wrong_usage_is_exit_code_2_with_a_hint(
         (["render", SAMPLE, "-o", "x.png", "--size", "big"], "give --size as 960x540"),
         (["render", SAMPLE, "-o", "x.png", "--size", "1x1"], "--size must be between"),
         (["render", SAMPLE, "-o", "x.mp4", "--fps", "0"], "--fps must be 1 to 240"),
-        (["render", SAMPLE, "-o", "x.png", "--frames", "0"], "--frames must be 2 to 1000"),
+        (["render", SAMPLE, "-o", "x.png", "--frames", "0"], "--frames must be 1 to 1000"),
         (["render", SAMPLE, "-o", "x.png", "--clip", "nobody"], "there is no clip 'nobody'"),
         (["export", SAMPLE, "-o", str(ROOT / "pyproject.toml")], "cannot be created"),
     ],
