@@ -24,7 +24,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.speech import pitch, sound
 from sample_clips.make.numbered_ids import numbered_ids as counting_ids
-from tests import kernels
+from tests import kernels, levels
 from tests.browsing import browse
 from tests.once import fitted_once, heard_once, read_once
 from tests.run_notes import KEY, NOTES, catch_crash, take_crashes
@@ -37,7 +37,7 @@ ROOT = Path(__file__).resolve().parents[1]
 WORKER = os.environ.get("PYTEST_XDIST_WORKER", "")
 os.environ["NUMBA_CACHE_DIR"] = str(kernels.provide(WORKER or "alone"))
 os.environ["METAGRAPH_MOTION_CACHE"] = str(ROOT / ".pytest_cache" / "motion")
-os.environ["METAGRAPH_MESH_CACHE"] = str(ROOT / ".pytest_cache" / "meshes")
+os.environ["METAGRAPH_MESH_CACHE"] = str(levels.HOME)
 
 # A process reads and hears each sound once: the samples' conversations were heard a hundred times. Before
 # others take these names from their modules.

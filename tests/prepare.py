@@ -31,10 +31,14 @@ def collected() -> list[str]:
 if __name__ == "__main__":
     # Beside each other: neither waits for the other, and what checks types is done before both are.
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    collecting = subprocess.Popen(collected(), cwd=ROOT, **quiet)
+    levels = [sys.executable, "-m", "tests.levels"]
+    # What cannot be collected is given by the tests themselves.
+    beside = [subprocess.Popen(command, cwd=ROOT, **quiet) for command in (collected(), levels)]
     try:
         kernels.make()
-        collecting.wait(timeout=900)  # what cannot be collected is given by the tests themselves
+        for process in beside:
+            process.wait(timeout=900)
     finally:
-        collecting.kill()
-        collecting.wait()
+        for process in beside:
+            process.kill()
+            process.wait()
