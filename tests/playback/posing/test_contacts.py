@@ -157,7 +157,6 @@ def _one(rig: Any, pose: Pose, n: int) -> ContactPose:
     return out
 
 
-@pytest.mark.nightly
 def test_clasped_hands_do_not_tremble_in_a_bowed_body() -> None:
     """Sadness brings them into the hips while one holds the other: they are pushed out as steadily as the
     clips move them.
