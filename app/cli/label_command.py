@@ -185,7 +185,8 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         _tell(word, [f"{_several(project, clips)}: {why}" for why, clips in group_reasons(reasons)])
     _tell("problem", errors)
     names = {clip: project.clips[clip].name for clip in found.proposals}
-    disputed = _tell_disputed([p for p in found.proposals.values() if p not in look], names)
+    looked = {p.clip for p in look}
+    disputed = _tell_disputed([p for p in found.proposals.values() if p.clip not in looked], names)
     words = (
         f"{path}: {len(taken.placed)} of {len(found.proposals)} clips labelled in {seconds:.1f} s, "
         f"{_count_looks(len(look), len(disputed))}" + (f"\n{place}" if changed else "")
@@ -202,7 +203,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         "twins": _count_lacking(one_sided) if options.twins else 0,
         "aside": {project.clips[c].name: why for c, why in found.aside.items()},
         "look": [names[p.clip] for p in look],
-        "disputed": disputed,
+        "contradictions": disputed,
         "errors": errors,
         "seconds": round(seconds, 2),
     }
@@ -227,7 +228,7 @@ def _tell_disputed(proposals: Iterable[Proposal], names: Mapping[str, str]) -> l
 
 
 def _count_looks(looks: int, disputed: int) -> str:
-    """Return how many clips somebody should look at, and how many more are called what they do not do."""
+    """Return how many clips somebody should look at, and how many more have a misleading name."""
     words = f"{looks} {'needs' if looks == 1 else 'need'} a look"
     if not disputed:
         return words

@@ -124,6 +124,7 @@ class Files(QObject):
         With `template`, a copy without a file is opened, so that saving asks for a place. `name` is the name
         of that copy, if not the project's.
         """
+        path = path.absolute()  # what draws its clips runs in another folder
         if self.refuse():
             return
         if not self.may_leave():

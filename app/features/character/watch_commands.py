@@ -318,7 +318,10 @@ def fill_choice(shell: Shell, menu: QMenu, name: str) -> None:
         group.addAction(action)
         menu.addAction(action)
     if name == "background":
-        menu.addSection(tr("Saved with the project"))
+        menu.addSeparator()
+        menu.addAction(tr("Saved with the project")).setEnabled(
+            False
+        )  # a heading: styles hide those of sections
         for kind, words in BACKDROP_WORDS.items():
             action = QAction(tr(words), menu, checkable=True)
             action.setChecked(kind == kept)

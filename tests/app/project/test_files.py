@@ -174,6 +174,15 @@ def test_opening_loads_the_clips_and_is_remembered(desk, saved, qtbot):
     assert not desk.document.dirty
 
 
+def test_a_project_opened_by_a_relative_path_has_an_absolute_folder(desk, saved, qtbot, monkeypatch):
+    """Its pictures are drawn by a process in another folder, which would not find the character there."""
+    desk.document.load(Project(), None)
+    monkeypatch.chdir(saved.parent)
+    desk.open(Path(saved.name))
+    qtbot.waitUntil(lambda: bool(desk.document.project.clips))
+    assert desk.document.folder == saved.parent
+
+
 def test_a_template_is_opened_without_its_file(desk, saved, qtbot):
     desk.document.load(Project(), None)
     desk.open(saved, template=True)
