@@ -9,7 +9,7 @@ import json
 import sys
 import time
 from argparse import Namespace
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -185,8 +185,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         _tell(word, [f"{_several(project, clips)}: {why}" for why, clips in group_reasons(reasons)])
     _tell("problem", errors)
     names = {clip: project.clips[clip].name for clip in found.proposals}
-    looked = {p.clip for p in look}
-    disputed = _tell_disputed([p for p in found.proposals.values() if p.clip not in looked], names)
+    disputed = _tell_disputed(found.proposals.values(), {p.clip for p in look}, names)
     words = (
         f"{path}: {len(taken.placed)} of {len(found.proposals)} clips labelled in {seconds:.1f} s, "
         f"{_count_looks(len(look), len(disputed))}" + (f"\n{place}" if changed else "")
@@ -220,9 +219,13 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     return _exit_code(len(taken.left), len(errors), sum(p.severity == "error" for p in seen))
 
 
-def _tell_disputed(proposals: Iterable[Proposal], names: Mapping[str, str]) -> list[str]:
-    """Print where name and motion contradict each other; return the names of these clips."""
-    disputed = {names[p.clip]: p.conflicts[0] for p in proposals if p.conflicts}
+def _tell_disputed(
+    proposals: Iterable[Proposal], looked: Container[str], names: Mapping[str, str]
+) -> list[str]:
+    """Print where name and motion contradict each other, but for clips that need a look anyway; return the
+    names of the others.
+    """
+    disputed = {names[p.clip]: p.conflicts[0] for p in proposals if p.conflicts and p.clip not in looked}
     _tell("contradiction", [f"{name}: {why}" for name, why in disputed.items()])
     return [*disputed]
 
