@@ -94,7 +94,7 @@ def rarely(document: dict[str, Any]) -> None:
     """
     arms, body, head = (document["layers"][layer] for layer in ("arms", "body", "head"))
     actions = {a["name"]: a for layer in (arms, body, head) for a in layer["actions"]}
-    for name in ("wave", "point", "shrug", "beat"):
+    for name in ("wave", "point", "shrug", "nudge"):
         actions[name] |= {"spacing": 4, "cooldown": 0}
     arms["markov"]["states"][0] = ["left", "gesture"]
     arms["stances"].append({"id": "s900", "name": "far away"})

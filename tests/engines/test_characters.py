@@ -117,8 +117,8 @@ HEARD: dict[int, list[tuple[str, int, int]]] = {
 @cache
 def streaming() -> tuple[int, list[float]]:
     """Return the rate and the samples that pieces are cut from."""
-    rate, pieces = list_streams()[1]
-    return rate, [x / 128 for piece in pieces for x in piece]
+    stream = list_streams()[1]
+    return stream["rate"], [x / 128 for piece in stream["pieces"] for x in piece]
 
 
 def sounds(frame: int) -> list[dict[str, Any]]:

@@ -371,7 +371,7 @@ def test_a_floor_of_ones_own_stands_beside(
     own = json.loads(run(capsys, *words, "--floor", tmp_path / "other"))
     planted = json.loads(run(capsys, *words))
     floors = [next(r for r in d["rows"] if r["name"] == "floor")["values"] for d in (own, planted)]
-    assert floors[0] != floors[1] and all(0 < f["distance"] < 0.6 for f in floors)
+    assert floors[0] != floors[1] and all(f["distance"] > 0 for f in floors)
     (tmp_path / "empty").mkdir()
     assert "no other motion" in run(capsys, *words[:-1], "--floor", tmp_path / "empty", code=1)
 

@@ -229,7 +229,9 @@ def test_a_stance_that_no_clip_rests_in_is_held_and_told(
     out = tmp_path / "held.metagraph.yaml"
     main(["label", str(folder), "-o", str(out), "--no-pictures", "--play", "0", "--json"])
     shown = capsys.readouterr()
-    assert "still for its" in json.loads(shown.out)["held"]["on hips"] and "held: on hips: " in shown.err
+    assert (
+        "no clip rests there; " in json.loads(shown.out)["held"]["on hips"] and "held: on hips: " in shown.err
+    )
     page = out.with_name("held.labels.html").read_text()
     assert (
         "Stances that no clip rests in" in page

@@ -227,7 +227,7 @@ def test_live_motion_is_evaluated_for_speech_that_is_heard_and_announced(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     rows = json.loads(run(capsys, "evaluate", str(folder / "takes"), *said(folder), "--live", "--json"))
-    assert [r["how"] for r in rows][:2] == ["heard", "told 0 s ahead"] and rows[-1]["how"] == "all known"
+    assert [r["how"] for r in rows][:2] == ["heard", "announced 0 s ahead"] and rows[-1]["how"] == "all known"
     assert rows[0]["met"] < rows[3]["met"] and all(r["seconds"] == pytest.approx(54, abs=2) for r in rows)
 
 

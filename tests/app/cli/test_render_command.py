@@ -30,7 +30,7 @@ def project():
 def test_actions_are_called_as_their_node_calls_them(project, tmp_path, monkeypatch):
     under = []
 
-    def contact_sheet(images, columns, labels=(), *others):
+    def contact_sheet(images, columns, labels=(), **others):
         under.extend(labels)
         return np.zeros((4, 4, 4), np.uint8)
 

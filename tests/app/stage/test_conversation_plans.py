@@ -21,7 +21,7 @@ from metagraph.formats.store import open_project, save_project
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.graph.model import Project
-from metagraph.graph.requests import Gesture, Look, Place
+from metagraph.graph.requests import Gesture, Look, Place, Play
 from preview.figure import SkinnedFigure
 
 ROOT = Path(__file__).parents[3]
@@ -100,7 +100,7 @@ def test_the_timeline_shows_one_sides_plan_and_the_other_when_it_is_chosen(stage
     staged.timeline.stage.setFocus()
     QTest.keyClick(staged.timeline.stage, Qt.Key.Key_Down)
     staged.wait(lambda: staged.performance.shown.side == 1)
-    assert [a.stroke for a in staged.performance.asks if isinstance(a, Gesture)] == [5.0]
+    assert [a.stroke for a in staged.performance.asks if isinstance(a, Gesture | Play)] == [5.0]
     assert staged.preview.scene().actors[0].positions[..., 0].mean() < 0, "nobody moves to another place"
 
 
@@ -344,7 +344,7 @@ def test_it_is_written_from_the_command_line_as_a_video_with_sound_and_as_motion
         [sys.executable, "-m", "app.cli", "render", str(talking), "--conversation", "Nobody", "-o", "x.png"],
         cwd=ROOT, capture_output=True, text=True, timeout=100,
     )  # fmt: skip
-    assert wrong.returncode == 1 and "it keeps 'Greeting'" in wrong.stderr
+    assert wrong.returncode == 1 and "it has 'Greeting'" in wrong.stderr
 
 
 # --- more than two

@@ -11,6 +11,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QMessageBox
 
+from app.features.character.character_gallery import CharacterGallery
 from app.features.files.import_line import ImportLine
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.graph.model import Project
@@ -121,6 +122,10 @@ def test_a_file_of_stand_ins_offers_to_choose_a_character(drive, line, toy, tmp_
     assert label.text() == "Label clips…"
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *a, **k: (str(tmp_path / "body.glb"), ""))
     press(button)
+    gallery = drive.window.findChild(CharacterGallery)
+    gallery.from_file.click()
+    drive.wait(gallery.use.isEnabled)
+    press(gallery.use)
     drive.wait(lambda: drive.document.project.character is not None)
 
 

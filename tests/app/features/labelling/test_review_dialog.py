@@ -377,11 +377,11 @@ def test_clips_left_aside_stand_at_the_end_with_the_reason_and_are_labelled_all_
     drive = toys
     dialog = made_of(drive, "one stance and exercises")
     project, aside = drive.document.project, dialog.work.aside
-    assert len(aside) == 14 and len(aside) + len(dialog.work.clips) == len(project.clips)
+    assert len(aside) == 16 and len(aside) + len(dialog.work.clips) == len(project.clips)
     assert not set(aside) & set(dialog.work.clips) and dialog.work.waiting() == list(dialog.work.clips)
     tree = dialog.queue.list
     texts = [tree.topLevelItem(n).text(0) for n in range(tree.topLevelItemCount())]
-    assert texts[len(dialog.work.clips)] == "Skipped (14)" and texts[-1].startswith("–  ")
+    assert texts[len(dialog.work.clips)] == "Skipped (16)" and texts[-1].startswith("–  ")
     walks = next(c for c in aside if "walk" in project.clips[c].name)
     row = next(n for n, text in enumerate(texts) if text.endswith(project.clips[walks].name))
     assert "skipped" in tree.topLevelItem(row).toolTip(0)
@@ -441,7 +441,7 @@ def test_when_all_but_those_left_aside_is_placed_that_is_said(toys):
     press(dialog, K.Key_A)
     while dialog.current is not None:
         press(dialog, K.Key_Return)
-    assert "14 skipped clips" in dialog.stage.words.text() and dialog.go.text() == "Done"
+    assert "16 skipped clips" in dialog.stage.words.text() and dialog.go.text() == "Done"
     assert not dialog.queue.bridge.isVisible()  # one stance: there is nothing to bridge
     press(dialog, K.Key_Tab)
     assert dialog.current == dialog.work.aside[0]
