@@ -26,9 +26,11 @@ from metagraph.motion.mesh_rays import find_hits
 from preview.figure import SkinnedFigure
 
 if TYPE_CHECKING:
+    from metagraph.motion.prop_tops import PropTop
     from preview.scene import Actor
 
 LYING = 0.02  # metres between a prop and what it lies on
+TOPS = 64  # places of props whose tops are kept
 SKY = 2000.0  # metres: higher than any prop
 
 
@@ -43,6 +45,7 @@ class PropMeshes:
     meshes: dict[Path, CharacterMesh] = field(default_factory=dict)
     _figures: dict[tuple[Path, float], SkinnedFigure] = field(default_factory=dict)
     carrying: tuple[Hashable, tuple[str, float]] | None = None  # what was last found to carry who sits
+    tops: dict[Hashable, tuple[PropTop, ...]] = field(default_factory=dict)  # on which hands rest
 
     def locate(self, path: str, folder: Path | None = None) -> Path:
         """Return the whole path of a prop's file, spelt in one way. folder: instead of its own."""
@@ -57,6 +60,12 @@ class PropMeshes:
         if key not in self._figures:
             self._figures[key] = SkinnedFigure(replace(mesh, positions=mesh.positions * np.float32(scale)))
         return self._figures[key]
+
+    def keep_tops(self, key: Hashable, tops: tuple[PropTop, ...]) -> None:
+        """Keep the tops of a prop where it stands, and those of the last others."""
+        if len(self.tops) >= TOPS:
+            self.tops.clear()
+        self.tops[key] = tops
 
     def keep_used(self, used: set[tuple[Path, float]]) -> None:
         """Forget all figures but some, and the files that none of those is of."""
