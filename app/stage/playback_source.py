@@ -153,7 +153,7 @@ class ShownPlayback:
 
     @cached_property
     def without_props(self) -> Poses | None:
-        """Return the evaluator of what plays, as if no props stood there; None if there is nothing to show."""
+        """Return the evaluator of what plays, as if no props stood there; None for nothing to show."""
         project = self.project
         entry = project.clips.get(self.clip or self.motion or "")
         motion = entry.motion if entry is not None else None

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import product
+from pathlib import Path
 
 import numpy as np
 
@@ -40,7 +42,7 @@ def _rest(
         top
         for prop in now.values()
         if not prop.joint
-        for top in list_prop_tops(prop, meshes, first, one.stand)
+        for top in list_prop_tops(prop, meshes, first.folder, (first.stand, one.stand))
     )
     own = now if one.side == first.side else one.project.props
     carried = _list_carried(own, meshes, one) if tops else {}
@@ -50,22 +52,26 @@ def _rest(
 
 
 def list_prop_tops(
-    prop: Prop, meshes: PropMeshes, first: ShownPlayback, stand: Stand | None
+    prop: Prop,
+    meshes: PropMeshes,
+    folder: Path | None = None,
+    stands: tuple[Stand | None, Stand | None] = (None, None),
 ) -> tuple[PropTop, ...]:
-    """Return the tops of a prop that stands, where who is at `stand` sees them; none until its file is read.
-    first: the speaker whose project it is of.
+    """Return the tops of a prop that stands, in a character's space; none until its file is read. folder:
+    what its path is relative to, if not what the meshes have. stands: of whose project it is, and of that
+    character.
     """
-    mesh = meshes.meshes.get(meshes.locate(prop.path, first.folder))
+    mesh = meshes.meshes.get(meshes.locate(prop.path, folder))
     if mesh is None:
         return ()
-    key = (mesh, prop.at, prop.turn, prop.scale, first.stand, stand)
+    key = (mesh, prop.at, prop.turn, prop.scale, stands)
     if key not in meshes.tops:
         points = rotation.rotate_vectors(np.array(make_turn(prop)), np.asarray(mesh.positions, float))
         points = points * prop.scale + prop.at
-        if first.stand != stand:
+        theirs, own = (stand or Stand() for stand in stands)
+        if theirs != own:
             still = np.broadcast_to(np.array((0.0, 0.0, 0.0, 1.0)), (len(points), 4))
-            points = (first.stand or Stand()).placed(still, points)[1]
-            own = stand or Stand()
+            points = theirs.placed(still, points)[1]
             back = Stand(turn=-own.turn)
             points = back.placed(still, points - (own.x, 0.0, own.z))[1]
         # An open surface may be upside down: it is seen from both sides.
@@ -82,7 +88,7 @@ def _list_carried(props: Mapping[str, Prop], meshes: PropMeshes, one: ShownPlayb
         if mesh is None:
             continue
         ends = np.stack([mesh.positions.min(0), mesh.positions.max(0)]).astype(float) * prop.scale
-        corners = np.array([[ends[i][0], ends[j][1], ends[k][2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+        corners = ends[np.array(list(product((0, 1), repeat=3))), (0, 1, 2)]
         placed = rotation.rotate_vectors(np.array(make_turn(prop)), corners) + prop.at
         out[prop.joint] = (*out.get(prop.joint, ()), *((x, y, z) for x, y, z in placed.tolist()))
     return out

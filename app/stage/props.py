@@ -45,7 +45,7 @@ class PropMeshes:
     meshes: dict[Path, CharacterMesh] = field(default_factory=dict)
     _figures: dict[tuple[Path, float], SkinnedFigure] = field(default_factory=dict)
     carrying: tuple[Hashable, tuple[str, float]] | None = None  # what was last found to carry who sits
-    tops: dict[Hashable, tuple[PropTop, ...]] = field(default_factory=dict)  # on which hands rest
+    tops: dict[tuple[Hashable, ...], tuple[PropTop, ...]] = field(default_factory=dict)  # by mesh and place
 
     def locate(self, path: str, folder: Path | None = None) -> Path:
         """Return the whole path of a prop's file, spelt in one way. folder: instead of its own."""
@@ -61,7 +61,7 @@ class PropMeshes:
             self._figures[key] = SkinnedFigure(replace(mesh, positions=mesh.positions * np.float32(scale)))
         return self._figures[key]
 
-    def keep_tops(self, key: Hashable, tops: tuple[PropTop, ...]) -> None:
+    def keep_tops(self, key: tuple[Hashable, ...], tops: tuple[PropTop, ...]) -> None:
         """Keep the tops of a prop where it stands, and those of the last others."""
         if len(self.tops) >= TOPS:
             self.tops.clear()
@@ -73,6 +73,8 @@ class PropMeshes:
         places = {place for place, _ in used}
         self.carrying = None
         self.meshes = {place: mesh for place, mesh in self.meshes.items() if place in places}
+        there = set(map(id, self.meshes.values()))
+        self.tops = {key: tops for key, tops in self.tops.items() if id(key[0]) in there}
 
 
 class PropFigures(QObject):

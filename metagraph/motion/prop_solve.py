@@ -28,8 +28,8 @@ from metagraph.motion.plain_vectors import (
 from metagraph.motion.weight_solve import WeightRig, hips_sink, stands_by
 
 SOFT = 0.01  # metres below a top and above it over which the push sets in
-MOST_LIFT = 0.24  # metres that a hand is lifted by
-HANGS = 0.6  # of a hand's length: one that is not as long from above hangs, or points upwards
+MOST_LIFT, CARRYING = 0.24, 0.34  # metres that a hand is lifted by, and one that carries something
+HANGS = 0.7  # of a hand's length: one that is not as long from above hangs, or points upwards
 CLASPED, FREE = 0.12, 0.25  # metres between wrists: hands that hold each other, and that do not
 REST = 0.07  # metres above a top from which a hand comes to rest
 SWING = 0.9  # radians that an elbow is moved outwards by
@@ -57,7 +57,8 @@ class HandPoint:
 class RestingRig:
     """The arms that rest on props. body: their joints. points: of the left and the right hand, the wrist
     first. forearms: their radii. ahead: where the hands' fingers point, across: from the little
-    finger to the index finger, directions in the hands' own spaces. carries: whether each hand carries a prop, which is not levelled.
+    finger to the index finger, directions in the hands' own spaces. carries: whether each hand carries a
+    prop, which is not levelled.
     """
 
     body: ContactRig
@@ -127,7 +128,7 @@ def _find_way(
             turn = times(level, turn)
             points = [(plus(wrist, rotated(level, minus(at, wrist))), radius) for at, radius in points]
         need = _find_need(rest, points)
-        raised = max(raised, rest.push * _limit(_soften(need)))
+        raised = max(raised, rest.push * _limit(_soften(need), CARRYING if rig.carries[side] else MOST_LIFT))
         lowered = max(lowered, rest.settle * _soften(min(-need, REST)))
     return raised - lowered, turn
 
@@ -144,11 +145,11 @@ def _soften(x: float) -> float:
     return x if x >= SOFT else (x + SOFT) * (x + SOFT) / (4.0 * SOFT)
 
 
-def _limit(x: float) -> float:
-    """Return a lift that is never more than MOST_LIFT."""
-    by = x / MOST_LIFT
+def _limit(x: float, most: float) -> float:
+    """Return a lift that is never more than so much."""
+    by = x / most
     by = by * by * by * by
-    return x / (1.0 + by * by) ** 0.125
+    return x / sqrt(sqrt(sqrt(1.0 + by * by)))
 
 
 def _fade(x: float) -> float:

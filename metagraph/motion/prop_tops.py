@@ -38,6 +38,12 @@ class PropTop:
         """Return the height of the middle of the cells, metres."""
         return float(np.median(self.heights[self.inside]))
 
+    @property
+    def distance(self) -> float:
+        """Return how far it is from where the character stands, seen from above, metres."""
+        i, k = np.nonzero(self.inside)
+        return float(np.hypot(self.x + i * CELL, self.z + k * CELL).min())
+
     def find_heights(self, places: Array) -> Array:
         """Return the heights below places `[..., 3]`, metres; beside the top those of its edge."""
         wide, deep = self.heights.shape
@@ -58,8 +64,8 @@ class PropTop:
         return np.asarray(within & self._near[np.clip(i, 0, wide - 1), np.clip(k, 0, deep - 1)])
 
     def meet(self, x: float, z: float) -> tuple[float, float]:
-        """Return the height below one place, metres, and how far it is on the top: 0 outside, 0.5 on the edge,
-        1 inside.
+        """Return the height below one place, metres, and how far it is on the top: 0 outside, 0.5 on the
+        edge, 1 inside.
         """
         heights, inside = self._lists
         wide, deep = len(heights), len(heights[0])
@@ -124,9 +130,7 @@ def _meet(corners: Array, cells: Array) -> tuple[Array, Array]:
     """Return which of some cells `[..., 2]` are below triangles `[..., 3, 3]`, and the heights there."""
     a, b, c = (corners[..., n, :] for n in range(3))
     at = cells * CELL
-    (ux, uz), (vx, vz), (wx, wz) = (
-        (p[..., 0] - a[..., 0], p[..., -1] - a[..., 2]) for p in (b, c, at)
-    )
+    (ux, uz), (vx, vz), (wx, wz) = ((p[..., 0] - a[..., 0], p[..., -1] - a[..., 2]) for p in (b, c, at))
     area = ux * vz - uz * vx
     area = np.where(np.abs(area) > 1e-12, area, np.inf)
     s, t = (wx * vz - wz * vx) / area, (ux * wz - uz * wx) / area
@@ -158,7 +162,9 @@ def _sum_around(values: Array, by: int) -> Array:
     total = np.pad(values.astype(float), by).cumsum(0).cumsum(1)
     total = np.pad(total, ((1, 0), (1, 0)))
     wide = 2 * by + 1
-    return np.asarray(total[wide:, wide:] - total[:-wide, wide:] - total[wide:, :-wide] + total[:-wide, :-wide])
+    return np.asarray(
+        total[wide:, wide:] - total[:-wide, wide:] - total[wide:, :-wide] + total[:-wide, :-wide]
+    )
 
 
 def _widen(inside: Array, by: int) -> Array:
@@ -178,4 +184,3 @@ def _fill(heights: Array, known: Array) -> Array:
         out[new] = (_sum_around(out, 1)[new]) / count[new]
         known |= new
     return out
-

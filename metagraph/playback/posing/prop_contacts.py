@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.model import Project
+from metagraph.graph.remembered import Remembered
 from metagraph.motion import rotation
 from metagraph.motion.contact_solve import ContactPose, ContactRig
 from metagraph.motion.joint_map import find_known_roles
@@ -42,11 +43,12 @@ SIDES = ("left", "right")
 RATE = 30.0  # samples a second
 BLOCK = 32  # samples found at once
 KEPT = 256  # blocks that are kept
-HANDS, FEET = 9, 7  # samples over which what a top does to them sets in, half as long as it takes
+HANDS, FEET = 11, 7  # samples over which what a top does to them sets in, half as long as it takes
+ARM = 0.6  # of the height: from the hips to stretched fingers, and a step
 REACH = 0.22  # metres below a top up to which a hand is brought onto it
 NEAR, FAR = 0.03, 0.07  # metres above a top: a hand comes to rest, and does not
 SLOW, QUICK = 0.12, 0.35  # metres a second: likewise
-MOST_PITCH, MOST_ROLL = 0.8, 0.5  # radians by which a hand is laid flat
+MOST_PITCH, MOST_ROLL = 0.7, 0.5  # radians by which a hand is laid flat
 UPRIGHT = 0.25  # cosine of a roll: a hand that is rolled so far stays rolled
 DEEP = 0.05  # metres below a top from which on a hand is laid flat on it
 STEP = 0.3  # metres: what is higher is no step
@@ -91,6 +93,23 @@ def find_resting_rig(project: Project, carried: Carried | None = None) -> Restin
     return set_carried(rig, held) if any(held) else rig
 
 
+_reaches: Remembered[float] = Remembered(lambda project: (project.clips, project.skeleton))
+
+
+def measure_reach(project: Project) -> float:
+    """Return how far from where it stands a character comes in its clips, with arms stretched, metres."""
+    return _reaches.of(project, (), lambda: _measure_reach(project))
+
+
+def _measure_reach(project: Project) -> float:
+    far = 0.0
+    for entry in project.clips.values():
+        if entry.motion is not None and entry.motion.skeleton == project.skeleton and entry.motion.frames:
+            root = np.asarray(entry.motion.pose_at(np.arange(0, entry.motion.duration + 1e-6, 0.5)).root)
+            far = max(far, float(np.hypot(root[:, 0], root[:, 2]).max()))
+    return far + ARM * (project.skeleton.height if project.skeleton is not None else 0.0)
+
+
 def _find_direction(turned: Array, way: Array) -> tuple[float, float, float]:
     """Return where a way of the rest pose points, in the space of a joint that is turned there."""
     own = rotation.rotate_vectors(rotation.conjugate(turned), way)
@@ -132,9 +151,7 @@ def _list_points(
     return out
 
 
-def _list_carried(
-    skeleton: Skeleton, body: ContactRig, hand: int, carried: Carried
-) -> tuple[HandPoint, ...]:
+def _list_carried(skeleton: Skeleton, body: ContactRig, hand: int, carried: Carried) -> tuple[HandPoint, ...]:
     below = {skeleton.names[j] for j in skeleton.descendants(hand)}
     return tuple(
         HandPoint(body.places[name], corner, 0.0)
@@ -154,6 +171,9 @@ class _Samples:
     lifts: Array
 
 
+UNKNOWN = _Samples(np.zeros(0), np.zeros(0))
+
+
 @dataclass(frozen=True, eq=False)
 class RestingStage:
     """Rests hands and feet of a plan on tops. sample: the poses before life at times `[N]`."""
@@ -164,15 +184,19 @@ class RestingStage:
     legs: WeightRig | None
     sample: Callable[[Array], Pose]
     _raw: dict[int, _Samples] = field(default_factory=dict)
-    _smooth: dict[int, _Samples] = field(default_factory=dict)
+    _smooth: dict[int, _Samples | None] = field(default_factory=dict)
 
     def run(self, pose: Pose, times: Array) -> Pose:
-        """Return poses `[N, J]` at `times [N]` with hands and feet on tops; the same arrays if none is near."""
+        """Return poses `[N, J]` at `times [N]` with hands and feet on tops; the same arrays if none is
+        near.
+        """
         if not self.tops or (self.rig is None and self.legs is None):
             return pose
         found = self._find(times)
-        busy_hands = (found.hands[..., :2] > LEAST).any((1, 2, 3)) if self.rig is not None else np.zeros(len(times), bool)
-        busy_feet = (found.lifts > LEAST).any(1)
+        if found is None:
+            return pose
+        busy_hands = np.asarray((found.hands[..., :2] > LEAST).any((1, 2, 3)))
+        busy_feet = np.asarray((found.lifts > LEAST).any(1))
         busy = np.flatnonzero(busy_hands | busy_feet)
         if not len(busy):
             return pose
@@ -198,28 +222,43 @@ class RestingStage:
             for side in found.hands[n].tolist()
         ]
 
-    def _find(self, times: Array) -> _Samples:
-        """Return what tops do at times."""
+    def _find(self, times: Array) -> _Samples | None:
+        """Return what tops do at times; None if they do nothing."""
+        if len(times) == 1:
+            now = float(times[0]) * RATE
+            one, n = self._smoothed(int(now // BLOCK)), int(now // 1) % BLOCK
+            if one is None:
+                return None
+            k = now - now // 1
+            two = slice(n, n + 2)
+            (a, b), (c, d) = one.hands[two], one.lifts[two]
+            return _Samples((a + k * (b - a))[None], (c + k * (d - c))[None])
         at = np.asarray(times, float) * RATE
         first = np.floor(at).astype(np.int64)
         blocks, places = np.divmod(first, BLOCK)
         which, of = np.unique(blocks, return_inverse=True)
-        kept = [self._smoothed(int(block)) for block in which]
+        found = [self._smoothed(int(block)) for block in which]
+        if all(one is None for one in found):
+            return None
+        none = _Samples(np.zeros((BLOCK + 1, 2, len(self.tops), 4)), np.zeros((BLOCK + 1, 2)))
+        kept = [none if one is None else one for one in found]
         place, part = of * (BLOCK + 1) + places, at - first
         return _Samples(
             _between(np.concatenate([one.hands for one in kept]), place, part[:, None, None, None]),
             _between(np.concatenate([one.lifts for one in kept]), place, part[:, None]),
         )
 
-    def _smoothed(self, block: int) -> _Samples:
-        """Return what tops do over a block, with the first sample after it."""
-        found = self._smooth.get(block)
-        if found is None:
+    def _smoothed(self, block: int) -> _Samples | None:
+        """Return what tops do over a block, with the first sample after it; None if they do nothing."""
+        found = self._smooth.get(block, UNKNOWN)
+        if found is UNKNOWN:
             some = [self._sampled(block + n) for n in (-1, 0, 1)]
             hands, lifts = np.concatenate([o.hands for o in some]), np.concatenate([o.lifts for o in some])
             hands[..., 0] = _highest(hands[..., 0], HANDS)
             here = slice(BLOCK, 2 * BLOCK + 1)
-            found = _Samples(_average(hands, HANDS)[here], _average(_highest(lifts, FEET), FEET)[here])
+            found = None
+            if hands.any() or lifts.any():
+                found = _Samples(_average(hands, HANDS)[here], _average(_highest(lifts, FEET), FEET)[here])
             if len(self._smooth) >= KEPT:
                 self._smooth.clear()
             self._smooth[block] = found
@@ -244,16 +283,19 @@ class RestingStage:
             assert self.rig is not None
             points = self.rig.points[side]
             joints = [self.rig.body.joints[p.place] for p in points]
-            placed = at[:, joints] + rotation.rotate_vectors(turned[:, joints], np.array([p.at for p in points]))
+            offsets = np.array([p.at for p in points])
+            placed = at[:, joints] + rotation.rotate_vectors(turned[:, joints], offsets)
             speed = np.linalg.norm(np.diff(placed[:, 0], axis=0), axis=1) * RATE
             slow = _fade((QUICK - speed) / (QUICK - SLOW))
+            own = [n for n, p in enumerate(points) if p.radius > 0]  # of the hand, not of what it carries
             radii = np.array([p.radius for p in points])
             placed = placed[1:]
             for n, top in enumerate(self.tops):
                 over = top.contains(placed).any(1)
                 if over.any():
-                    depth = (top.find_heights(placed) + radii - placed[..., 1]).max(1)
-                    over &= depth <= REACH
+                    depths = top.find_heights(placed) + radii - placed[..., 1]
+                    over &= depths[:, own].max(1) <= REACH
+                    depth = depths.max(1)
                     hands[:, side, n, 0] = over
                     hands[:, side, n, 1] = over * slow * _fade((FAR + depth) / (FAR - NEAR))
                     level = np.maximum(over * _fade(depth / DEEP), hands[:, side, n, 1])
@@ -270,7 +312,9 @@ class RestingStage:
         return _Samples(hands, lifts)
 
     def _find_level(self, top: PropTop, side: int, turned: Array, placed: Array) -> Array:
-        """Return the pitch and roll `[N, 2]` that lay a hand flat on a top. placed `[N, P, 3]`: its points."""
+        """Return the pitch and roll `[N, 2]` that lay a hand flat on a top. placed `[N, P, 3]`: its
+        points.
+        """
         assert self.rig is not None
         points = self.rig.points[side]
         far = [n for n, point in enumerate(points) if point.far]
@@ -282,8 +326,8 @@ class RestingStage:
         size = np.maximum(np.linalg.norm(tip - wrist, axis=1), 1e-6)
         thick = np.mean([points[n].radius for n in far]) - points[0].radius
         rises = top.find_heights(tip) - top.find_heights(wrist) + thick
-        pitch = np.arcsin(np.clip(rises / size, -0.7, 0.7)) - np.arcsin(np.clip((tip - wrist)[:, 1] / size, -1, 1))
-        pitch = np.clip(pitch, -MOST_PITCH, MOST_PITCH)
+        now = np.arcsin(np.clip((tip - wrist)[:, 1] / size, -1, 1))
+        pitch = np.clip(np.arcsin(np.clip(rises / size, -0.7, 0.7)) - now, -MOST_PITCH, MOST_PITCH)
         # Laid flat it points ahead as seen from above, and its thumb's side is as high as the other.
         flat = ahead * (1, 0, 1)
         flat = flat / np.maximum(np.linalg.norm(flat, axis=1), 1e-6)[:, None]
@@ -344,20 +388,24 @@ class RestingEvaluator:
     ) -> None:
         """tops: in the character's space. carried: as `find_resting_rig` has it."""
         self.inner = inner
-        self._planned = isinstance(inner, Evaluator) and not isinstance(inner, (MovedEvaluator, GeneratedEvaluator))
+        by_clip = isinstance(inner, (MovedEvaluator, GeneratedEvaluator))
+        self._planned = isinstance(inner, Evaluator) and not by_clip
         assert project.skeleton is not None
+        reach = measure_reach(project)
+        tops = [top for top in tops if top.distance <= reach]
         steps = any(top.height <= STEP for top in tops)
         self.stage = RestingStage(
             project.skeleton,
             tuple(tops),
-            find_resting_rig(project, carried),
+            find_resting_rig(project, carried) if tops else None,
             get_rigs(project).weight.rig if steps else None,
             self._sample,
         )
 
     def _sample(self, times: Array) -> Pose:
         inner: Any = self.inner
-        return inner.before_life(times) if self._planned else inner.at(times, alive=False)
+        pose: Pose = inner.before_life(times) if self._planned else inner.at(times, alive=False)
+        return pose
 
     def at(self, seconds: Any) -> Pose:
         """Return the pose at `seconds`, a number or an array `[...]`."""
@@ -376,4 +424,3 @@ class RestingEvaluator:
     def faces_at(self, times: Array) -> Faces:
         """Return morph target weights, 0..1, at each of `times [N]`."""
         return self.inner.faces_at(times)
-
