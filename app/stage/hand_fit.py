@@ -17,7 +17,11 @@ SECONDS, RATE = 30.0, 3.0  # of what the character does by itself that is looked
 OFTEN = 0.1  # of that time: what happens less often is not told
 SPARE = 0.02  # metres by which a hand is within reach after a prop was fitted
 
-_known: Remembered[np.ndarray] = Remembered(lambda project: (*gather_face_parts(project), project.graphs, project.life))
+_known: Remembered[np.ndarray] = Remembered(
+    lambda project: (*gather_face_parts(project), project.graphs, project.life)
+)
+    lambda project: (*gather_face_parts(project), project.graphs, project.life)
+)
 
 
 def measure_hands_below(project: Project, tops: tuple[PropTop, ...]) -> tuple[float, float] | None:

@@ -414,13 +414,16 @@ class PropsPanel(QWidget):
 
     def add(self, paths: Sequence[Path]) -> None:
         """Read files on a thread, and add those that can be drawn as one step; say why others cannot."""
+        from metagraph.formats.clips import digest
         from metagraph.formats.props.reader import read_prop
+
+        digests: dict[Path, str] = {}
 
         def read(_: object) -> tuple[dict[Path, CharacterMesh], list[FileError]]:
             good, bad = {}, []
             for path in paths:
                 try:
-                    good[path] = read_prop(path)
+                    good[path], digests[path] = read_prop(path), digest(path)
                 except FileError as error:
                     bad.append(error)
             return good, bad
@@ -430,13 +433,15 @@ class PropsPanel(QWidget):
             for path, mesh in good.items():
                 self.figures.props.keep_mesh(path, mesh)
             if good:
-                self._place([path for path in paths if path in good], good)
+                self._place([path for path in paths if path in good], good, digests)
             for error in bad:
                 self.document.failed.emit(tr_error(error))
 
         self.jobs.start("props", read, place, lambda error: self.document.failed.emit(tr_error(error)))
 
-    def _place(self, paths: Sequence[Path], meshes: Mapping[Path, CharacterMesh]) -> None:
+    def _place(
+        self, paths: Sequence[Path], meshes: Mapping[Path, CharacterMesh], digests: Mapping[Path, str]
+    ) -> None:
         """Add props in a row beside the character, to the viewer's right, none in another."""
         added: list[str] = []
         standing = [p for p in self.plan.props.values() if abs(p.at[2]) < BESIDE]
@@ -450,7 +455,8 @@ class PropsPanel(QWidget):
                     float(meshes[path].positions[:, 0].max()),
                 )
                 at = (round(right - low, 3), 0.0, 0.0)
-                prop = Prop(name=path.stem, path=make_path_for_project(path, self.document.folder), at=at)
+                place, sha256 = make_path_for_project(path, self.document.folder), digests.get(path, "")
+                prop = Prop(name=path.stem, path=place, at=at, sha256=sha256)
                 project, ident = add_prop(project, prop)
                 added.append(ident)
                 right += high - low + GAP
