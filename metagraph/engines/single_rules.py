@@ -243,10 +243,12 @@ def _weight_rig(given: RuleInput, body: ContactRig) -> WeightRig:
     )
 
 
-def _posed(out: list[float], pose: ContactPose) -> None:
+def _posed(pose: ContactPose) -> list[float]:
+    out: list[float] = []
     for place in range(len(pose.local)):
         _put_turn(out, pose.local[place])
         _put(out, pose.at[place])
+    return out
 
 
 def _geometry(rule: str, given: RuleInput) -> list[float]:
@@ -305,7 +307,7 @@ def _geometry(rule: str, given: RuleInput) -> list[float]:
                 moved = plant_feet(body, pose, feet, given.number())
         out.append(1.0 if moved else 0.0)
         spread(rig, pose)
-        _posed(out, pose)
+        out.extend(_posed(pose))
     return out
 
 
@@ -496,7 +498,9 @@ def _timing(alphabet: Alphabet, rule: str, given: RuleInput) -> list[float]:
         out.append(_yes(alike_timings(None, None)))
         out.append(_yes(tells_on(old, new)))
         out.append(_yes(restarts(old, new, said)))
-        out.append(_yes(comes_late(given.number(), given.number(), given.number(), said)))
+        first = given.number()
+        last = given.number()
+        out.append(_yes(comes_late(first, last, given.number(), said)))
         _put_line(alphabet, out, place_told(old, new, said))
         _put_line(alphabet, out, extended(old, new, said))
     return out
@@ -554,9 +558,12 @@ def _mood(seed: Bits, rule: str, given: RuleInput) -> list[float]:
         out.append(distance(mood, "happy"))
         for n in range(4):
             out.append(_yes(stirs(mood, seed, f"{tags[0]}{n}")))
-        _put_mood(out, changed(mood, given.number(), given.number(), given.number()))
+        valence = given.number()
+        arousal = given.number()
+        _put_mood(out, changed(mood, valence, arousal, given.number()))
     elif rule == "moods":
-        moods = Moods(_mood_of(given), _told(given))
+        base = _mood_of(given)
+        moods = Moods(base, _told(given))
         start = given.number()
         edges = mood_edges(moods, start, given.number())
         out.extend(edges)

@@ -43,7 +43,7 @@ inline void _put(List<double>& out, const std::tuple<double, double, double>& v)
 inline void _put_turn(List<double>& out, const std::tuple<double, double, double, double>& q);
 inline Ref<ContactRig> _rig(const Ref<RuleInput>& given, const Ref<ContactPose>& pose);
 inline Ref<WeightRig> _weight_rig(const Ref<RuleInput>& given, const Ref<ContactRig>& body);
-inline void _posed(const List<double>& out, const Ref<ContactPose>& pose);
+inline List<double> _posed(const Ref<ContactPose>& pose);
 inline List<double> _geometry(const std::string& rule, const Ref<RuleInput>& given);
 inline Ref<FootGoal> _foot(const Ref<RuleInput>& given);
 inline List<Ref<FootGoal>> _feet(const Ref<RuleInput>& given);
@@ -238,11 +238,13 @@ inline Ref<WeightRig> _weight_rig(const Ref<RuleInput>& given, const Ref<Contact
     );
 }
 
-inline void _posed(const List<double>& out, const Ref<ContactPose>& pose) {
+inline List<double> _posed(const Ref<ContactPose>& pose) {
+    List<double> out;
     for (int place = 0; place < lang::len(pose->local); place++) {
         single_rules::_put_turn(out, lang::at(pose->local, place));
         single_rules::_put(out, lang::at(pose->at, place));
     }
+    return out;
 }
 
 inline List<double> _geometry(const std::string& rule, const Ref<RuleInput>& given) {
@@ -309,7 +311,7 @@ inline List<double> _geometry(const std::string& rule, const Ref<RuleInput>& giv
         }
         out.push_back(moved ? 1.0 : 0.0);
         contact_solve::spread(rig, pose);
-        single_rules::_posed(out, pose);
+        lang::extend(out, single_rules::_posed(pose));
     }
     return out;
 }
@@ -542,9 +544,9 @@ inline List<double> _timing(const Ref<Alphabet>& alphabet, const std::string& ru
         out.push_back(single_rules::_yes(line_timing::alike_timings(nullptr, nullptr)));
         out.push_back(single_rules::_yes(line_timing::tells_on(old, new_)));
         out.push_back(single_rules::_yes(line_timing::restarts(old, new_, said)));
-        out.push_back(single_rules::_yes(
-            line_timing::comes_late(given->number(), given->number(), given->number(), said)
-        ));
+        double first = given->number();
+        double last = given->number();
+        out.push_back(single_rules::_yes(line_timing::comes_late(first, last, given->number(), said)));
         single_rules::_put_line(alphabet, out, line_timing::place_told(old, new_, said));
         single_rules::_put_line(alphabet, out, line_timing::extended(old, new_, said));
     }
@@ -613,9 +615,12 @@ inline List<double> _mood(std::uint32_t seed, const std::string& rule, const Ref
         for (int n = 0; n < 4; n++) {
             out.push_back(single_rules::_yes(mood::stirs(mood, seed, lang::text(lang::at(tags, 0), n))));
         }
-        single_rules::_put_mood(out, mood::changed(mood, given->number(), given->number(), given->number()));
+        double valence = given->number();
+        double arousal = given->number();
+        single_rules::_put_mood(out, mood::changed(mood, valence, arousal, given->number()));
     } else if (rule == "moods") {
-        Ref<Moods> moods = lang::made<Moods>(single_rules::_mood_of(given), single_rules::_told(given));
+        Ref<Mood> base = single_rules::_mood_of(given);
+        Ref<Moods> moods = lang::made<Moods>(base, single_rules::_told(given));
         double start = given->number();
         List<double> edges = mood::mood_edges(moods, start, given->number());
         lang::extend(out, edges);

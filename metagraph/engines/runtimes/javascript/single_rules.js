@@ -262,14 +262,16 @@ function _weightRig(given, body) {
 }
 
 /**
- * @param {number[]} out
  * @param {ContactPose} pose
+ * @returns {number[]}
  */
-function _posed(out, pose) {
+function _posed(pose) {
+  const out = [];
   for (let place = 0; place < pose.local.length; place++) {
     _putTurn(out, pose.local[place]);
     _put(out, pose.at[place]);
   }
+  return out;
 }
 
 /**
@@ -341,7 +343,7 @@ function _geometry(rule, given) {
     }
     out.push(moved ? 1 : 0);
     spread(rig, pose);
-    _posed(out, pose);
+    out.push(..._posed(pose));
   }
   return out;
 }
@@ -599,7 +601,9 @@ function _timing(alphabet, rule, given) {
     out.push(_yes(alikeTimings(null, null)));
     out.push(_yes(tellsOn(old, new_)));
     out.push(_yes(restarts(old, new_, said)));
-    out.push(_yes(comesLate(given.number(), given.number(), given.number(), said)));
+    const first = given.number();
+    const last = given.number();
+    out.push(_yes(comesLate(first, last, given.number(), said)));
     _putLine(alphabet, out, placeTold(old, new_, said));
     _putLine(alphabet, out, extended(old, new_, said));
   }
@@ -674,9 +678,12 @@ function _mood(seed, rule, given) {
     for (let n = 0; n < 4; n++) {
       out.push(_yes(stirs(mood, seed, `${tags[0]}${n}`)));
     }
-    _putMood(out, changed(mood, given.number(), given.number(), given.number()));
+    const valence = given.number();
+    const arousal = given.number();
+    _putMood(out, changed(mood, valence, arousal, given.number()));
   } else if (rule === "moods") {
-    const moods = new Moods(_moodOf(given), _told(given));
+    const base = _moodOf(given);
+    const moods = new Moods(base, _told(given));
     const start = given.number();
     const edges = moodEdges(moods, start, given.number());
     out.push(...edges);

@@ -205,13 +205,15 @@ namespace Metagraph
             );
         }
 
-        private static void Posed(List<double> out_, ContactPose pose)
+        private static List<double> Posed(ContactPose pose)
         {
+            var out_ = new List<double>();
             for (int place = 0; place < pose.Local.Count; place++)
             {
                 PutTurn(out_, pose.Local[place]);
                 Put(out_, pose.At[place]);
             }
+            return out_;
         }
 
         private static List<double> Geometry(string rule, RuleInput given)
@@ -300,7 +302,7 @@ namespace Metagraph
                 }
                 out_.Add(moved ? 1.0 : 0.0);
                 ContactSolveRules.Spread(rig, pose);
-                Posed(out_, pose);
+                out_.AddRange(Posed(pose));
             }
             return out_;
         }
@@ -562,7 +564,9 @@ namespace Metagraph
                 out_.Add(Yes(LineTimingRules.AlikeTimings(null, null)));
                 out_.Add(Yes(LineTimingRules.TellsOn(old, new_)));
                 out_.Add(Yes(LineTimingRules.Restarts(old, new_, said)));
-                out_.Add(Yes(LineTimingRules.ComesLate(given.Number(), given.Number(), given.Number(), said)));
+                var first = given.Number();
+                var last = given.Number();
+                out_.Add(Yes(LineTimingRules.ComesLate(first, last, given.Number(), said)));
                 PutLine(alphabet, out_, LineTimingRules.PlaceTold(old, new_, said));
                 PutLine(alphabet, out_, LineTimingRules.Extended(old, new_, said));
             }
@@ -638,11 +642,14 @@ namespace Metagraph
                 {
                     out_.Add(Yes(MoodRules.Stirs(mood, seed, tags[0] + PlainText.Of(n))));
                 }
-                PutMood(out_, MoodRules.Changed(mood, given.Number(), given.Number(), given.Number()));
+                var valence = given.Number();
+                var arousal = given.Number();
+                PutMood(out_, MoodRules.Changed(mood, valence, arousal, given.Number()));
             }
             else if (rule == "moods")
             {
-                var moods = new Moods(MoodOf(given), Told(given));
+                var base_ = MoodOf(given);
+                var moods = new Moods(base_, Told(given));
                 var start = given.Number();
                 var edges = MoodRules.MoodEdges(moods, start, given.Number());
                 out_.AddRange(edges);

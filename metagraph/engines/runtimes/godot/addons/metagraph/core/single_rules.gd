@@ -179,10 +179,12 @@ static func _weight_rig(given, body):
 	)
 
 
-static func _posed(out, pose):
+static func _posed(pose):
+	var out = []
 	for place in range(pose.local.size()):
 		_put_turn(out, pose.local[place])
 		_put(out, pose.at[place])
+	return out
 
 
 static func _geometry(rule, given):
@@ -241,7 +243,7 @@ static func _geometry(rule, given):
 				moved = FeetSolve.plant_feet(body, pose, feet, given.number())
 		out.append(1.0 if moved else 0.0)
 		ContactSolve.spread(rig, pose)
-		_posed(out, pose)
+		Util.extend(out, _posed(pose))
 	return out
 
 
@@ -424,7 +426,9 @@ static func _timing(alphabet, rule, given):
 		out.append(_yes(LineTiming.alike_timings(null, null)))
 		out.append(_yes(LineTiming.tells_on(old, new)))
 		out.append(_yes(LineTiming.restarts(old, new, said)))
-		out.append(_yes(LineTiming.comes_late(given.number(), given.number(), given.number(), said)))
+		var first = given.number()
+		var last = given.number()
+		out.append(_yes(LineTiming.comes_late(first, last, given.number(), said)))
 		_put_line(alphabet, out, LineTiming.place_told(old, new, said))
 		_put_line(alphabet, out, LineTiming.extended(old, new, said))
 	return out
@@ -478,9 +482,12 @@ static func _mood(seed_, rule, given):
 		out.append(Mood.distance(mood, "happy"))
 		for n in range(4):
 			out.append(_yes(Mood.stirs(mood, seed_, "%s%d" % [tags[0], n])))
-		_put_mood(out, Mood.changed(mood, given.number(), given.number(), given.number()))
+		var valence = given.number()
+		var arousal = given.number()
+		_put_mood(out, Mood.changed(mood, valence, arousal, given.number()))
 	elif rule == "moods":
-		var moods = Mood.Moods.new(_mood_of(given), _told(given))
+		var base = _mood_of(given)
+		var moods = Mood.Moods.new(base, _told(given))
 		var start = given.number()
 		var edges = Mood.mood_edges(moods, start, given.number())
 		Util.extend(out, edges)
