@@ -55,6 +55,7 @@ namespace Metagraph
         private int count;
         private readonly ParameterValues parameters;
         private readonly SpeechWatch speech = new SpeechWatch();
+        private List<Speech> watched; // what was said when it was last looked at
         private double seen = double.NegativeInfinity, cutAt;
 
         public Character(Graph graph, CharacterOptions options = null)
@@ -241,9 +242,12 @@ namespace Metagraph
 
         private void PlanOn()
         {
-            foreach (string what in UtterancesRules.FindForgotten(Plan.Track, Now))
+            if (WaitsForMore())
             {
-                queue.Add(new Ask { Do = "finish", Id = what + ".0", What = what });
+                foreach (string what in UtterancesRules.FindForgotten(Plan.Track, Now))
+                {
+                    queue.Add(new Ask { Do = "finish", Id = what + ".0", What = what });
+                }
             }
             bool far = Plan.End >= Now + options.Ahead - Math.Min(Slack, options.Ahead / 2);
             if (queue.Count > 0 || !far)
@@ -259,6 +263,20 @@ namespace Metagraph
                 cutAt = seen; // what has begun and ended since then is still to be told
                 Forget(seen - options.Recent);
             }
+        }
+
+        /// <summary>Whether any utterance may be forgotten of which more was promised: a frame in which none is makes no garbage.</summary>
+        private bool WaitsForMore()
+        {
+            List<Speech> speeches = Plan.Track.Speeches;
+            for (int n = 0; n < speeches.Count; n++)
+            {
+                if (speeches[n].More)
+                {
+                    return true;
+                }
+            }
+            return false;
         }
 
         /// <summary>Forget what is over, and settle the answers of what was asked for then.</summary>
@@ -290,18 +308,40 @@ namespace Metagraph
                     Note(cues[n].Start, cues[n].End, layer, cues[n].Action.Name, cues[n].Meta);
                 }
             }
-            foreach (SpeechEvent one in speech.Watch(Plan.Track.Speeches, seen, Now))
+            if (IsNewToHear())
             {
-                Insert(new CharacterEvent
+                watched = Plan.Track.Speeches;
+                foreach (SpeechEvent one in speech.Watch(watched, seen, Now))
                 {
-                    Kind = one.Kind, Layer = "speech", Action = one.Said, Meta = one.Id, At = one.At, Reason = one.Reason,
-                });
+                    Insert(new CharacterEvent
+                    {
+                        Kind = one.Kind, Layer = "speech", Action = one.Said, Meta = one.Id, At = one.At, Reason = one.Reason,
+                    });
+                }
             }
             seen = Now;
             if (events.Count > Remembered)
             {
                 events.RemoveRange(0, events.Count - Remembered);
             }
+        }
+
+        /// <summary>Whether speech may have begun or ended: in most frames none has, and these make no garbage.</summary>
+        private bool IsNewToHear()
+        {
+            List<Speech> speeches = Plan.Track.Speeches;
+            bool changed = speeches != watched;
+            for (int n = 0; n < speeches.Count && !changed; n++)
+            {
+                Speech one = speeches[n];
+                changed = IsNew(one.Start) || IsNew(one.End) || (one.Over != null && IsNew(one.Over.Value));
+            }
+            return changed;
+        }
+
+        private bool IsNew(double seconds)
+        {
+            return seconds > seen && seconds <= Now;
         }
 
         private void Note(double start, double end, string layer, string action, string key)
