@@ -187,8 +187,8 @@ def _check(speech: TakeSpeech, samples: Any, place: str) -> None:
 
 
 def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int) -> Any:
-    """Return who speaks when: `[T, 4]`, of the words if there are any, else of the sound."""
-    from metagraph.generation.features import compute_conversation_activity
+    """Return marks and who speaks when `[T, TOLD]`, of the words if there are any, else of the sound."""
+    from metagraph.generation.features import tell_conversation
     from metagraph.generation.sampler import hear_activity
 
     if speech.conversation is None:
@@ -197,15 +197,19 @@ def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int)
         return hear_activity(samples)
     if not speech.conversation.sides[options.side - 1].segments:
         print(f"note: side {options.side} does not speak, so it listens", file=sys.stderr)
-    return compute_conversation_activity(speech.conversation, options.side - 1, frames)
+    return tell_conversation(speech.conversation, options.side - 1, frames)
 
 
 def as_role(activity: Any, role: str) -> Any:
-    """Return activity that gives the speaker this role throughout."""
+    """Return activity `[T, 4]` that gives the speaker this role throughout; the marks, which are those of
+    another role, are left out.
+    """
     import numpy as np
 
     from metagraph.generation.features import BOTH, NONE, PARTNER, SELF
+    from metagraph.generation.networks import ACTIVITY
 
+    activity = np.asarray(activity)[:, -ACTIVITY:]
     out = np.zeros_like(activity)
     quiet = activity[:, NONE] > 0.5
     chosen = {"speaking": SELF, "listening": PARTNER, "both": BOTH, "none": NONE}[role]
@@ -262,7 +266,7 @@ def write_motion(options: Namespace) -> int:
         write_bvh(clip, out)
     else:
         write_glb(out, [clip])
-    shares = {r: round(float(heard.activity[:, n].mean()), 3) for n, r in enumerate(ROLES)}
+    shares = {r: round(float(heard.activity[:, n - len(ROLES)].mean()), 3) for n, r in enumerate(ROLES)}
     data = {
         "out": str(out),
         "frames": clip.frames,

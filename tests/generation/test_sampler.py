@@ -211,7 +211,7 @@ def test_the_shortest_sounds_are_moved_to():
 
 def test_one_voice_alone_will_do():
     told = hear_activity(SOUND[0])
-    assert told.shape == (count_sound_frames(SOUND.shape[1]), 4)
+    assert told.shape == (count_sound_frames(SOUND.shape[1]), 9)
     assert sample_whole(MODELS["flow-vae"], SOUND[0], told).frames == 76
 
 
