@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 VIDEOS = (".mp4", ".mov", ".webm")
 MOTION = (".glb", ".usda", ".bvh", ".npz")  # what `bake_to` writes
+NAMED = 12  # clips that are told by name at most
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -239,7 +240,9 @@ def run(options: Namespace) -> int:
             )
         clip = next(iter(found), None)
         if clip is None or project.clips[clip].motion is None:
-            raise ValueError(f"there is no clip '{options.clip}' in the project")
+            raise ValueError(
+                f"there is no clip '{options.clip}' in the project; {_list_clips(project, options.clip)}"
+            )
         options.start, options.seconds = 0.0, project.clips[clip].duration
     if options.conversation is not None:
         shown = _talking(project, options, folder)
@@ -304,6 +307,17 @@ class Shot:
     direction: Direction = ((), ())
     seat: str = "stool"
     props: PropMeshes | None = None
+
+
+def _list_clips(project: Project, wanted: str) -> str:
+    """Return the names of a project's clips, in words: first those that have some of what was wanted in
+    them.
+    """
+    names = sorted(
+        {c.name for c in project.clips.values()}, key=lambda name: wanted.casefold() not in name.casefold()
+    )
+    more = f", and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    return f"its clips are {', '.join(repr(n) for n in names[:NAMED])}{more}"
 
 
 def _direction(

@@ -144,7 +144,9 @@ def _tones(windows: Array) -> Array:
         best = float(even[first:last].max())
         if best < REPEATED:
             continue
-        tops = (even[first:last] >= even[first - 1 : last - 1]) & (even[first:last] >= even[first + 1 : last + 1])
+        tops = (even[first:last] >= even[first - 1 : last - 1]) & (
+            even[first:last] >= even[first + 1 : last + 1]
+        )
         fine = np.flatnonzero(tops & (even[first:last] >= 0.9 * best))
         if len(fine):
             out[n] = np.log2(RATE / (first + fine[0]))
@@ -160,8 +162,8 @@ def make_silence(tracks: int = 1) -> Array:
 
 
 class AudioStream:
-    """Mels and pitch of samples as they come in. tracks: 1 mixes the voices, 2 keeps both. gains: what brings each
-    channel to the same loudness (`loudness.compute_gain`), 1 for each unless given.
+    """Mels and pitch of samples as they come in. tracks: 1 mixes the voices, 2 keeps both. gains: what brings
+    each channel to the same loudness (`loudness.compute_gain`), 1 for each unless given.
     """
 
     def __init__(self, channels: int = 2, tracks: int = 1, gains: Sequence[float] | None = None) -> None:
@@ -179,8 +181,8 @@ class AudioStream:
         self._ended = False
 
     def push(self, samples: Array) -> Array:
-        """Return the mels and pitch `[n, tracks * MELS + PITCH]` that are ready. samples: `[C, N]` or `[N]` at RATE, about
-        -1..1. Raises FeatureError.
+        """Return the mels and pitch `[n, tracks * MELS + PITCH]` that are ready. samples: `[C, N]` or `[N]`
+        at RATE, about -1..1. Raises FeatureError.
         """
         if self._ended:
             raise FeatureError("the sound has ended already: begin a new one")
@@ -235,7 +237,7 @@ class AudioStream:
                 powers[c, n : n + len(some)] = [float(row @ row) for row in np.ascontiguousarray(some)]
         out = np.zeros((count, PITCH), np.float32)
         for n in range(count):
-            for c in np.flatnonzero(np.isfinite(tones[:, n])):
+            for c in np.flatnonzero(np.isfinite(tones[:, n])).tolist():
                 self._voiced[c] += 1
                 part = max(1.0 / self._voiced[c], 1.0 / ADAPTED)
                 self._usual[c] += part * (tones[c, n] - self._usual[c])

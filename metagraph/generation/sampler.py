@@ -238,7 +238,9 @@ def make_conversation_motion(
 
 
 def hear_activity(samples: Array) -> Array:
-    """Return marks and activity `[T, TOLD]` of a recording without words: samples `[C, N]` at `features.RATE`."""
+    """Return marks and activity `[T, TOLD]` of a recording without words: samples `[C, N]` at
+    `features.RATE`.
+    """
     samples = np.atleast_2d(samples)
     partner = samples[1] if len(samples) > 1 else None
     return tell_by_sound(samples[0], partner, RATE, count_sound_frames(samples.shape[1]))

@@ -167,7 +167,9 @@ def plan_of(
     return TrainingPlan(
         kind=kind,
         size=size,
-        sizes=make_sizes(kind, size, rig.numbers, count_audio(kind, tracks), published) if sizes is None else sizes,
+        sizes=make_sizes(kind, size, rig.numbers, count_audio(kind, tracks), published)
+        if sizes is None
+        else sizes,
         tracks=tracks,
         skeleton=make_skeleton_card(rig),
         takes=tuple(make_take_card(t) for t in takes),

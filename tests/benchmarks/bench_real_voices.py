@@ -142,7 +142,9 @@ def measure_all(options: argparse.Namespace) -> None:
             shifts = np.random.default_rng(0).uniform(0.02, 0.98, SHIFTS)
             found = []
             for seed in range(1, options.seeds + 1):
-                poses = generate_recording_poses(model, heard, seed, take=side, lookahead=options.ahead)[:count]
+                poses = generate_recording_poses(model, heard, seed, take=side, lookahead=options.ahead)[
+                    :count
+                ]
                 made = make_motion_sample(model.rig, poses, driven)
                 nods = compute_measures([made], [seen])["nods_responses"]
                 found.append({**measure_hands(made, loud, shifts), "nods": nods})

@@ -20,7 +20,6 @@ from metagraph.generation.features import (
     RATE,
     RESPONSE,
     STRANGEST,
-    TOLD as ALL_TOLD,
     AudioStream,
     FeatureError,
     FeatureStream,
@@ -36,6 +35,9 @@ from metagraph.generation.features import (
     tell_by_sound,
     tell_conversation,
     with_edges,
+)
+from metagraph.generation.features import (
+    TOLD as ALL_TOLD,
 )
 from metagraph.generation.poses import Standardisation
 from metagraph.graph.conversation.model import Conversation, Segment, Side

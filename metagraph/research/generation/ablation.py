@@ -18,7 +18,17 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.generation.features import BOTH, HESITATION, MELS, NONE, PARTNER, PARTNER_STRESS, SELF, TOLD, compute_features
+from metagraph.generation.features import (
+    BOTH,
+    HESITATION,
+    MELS,
+    NONE,
+    PARTNER,
+    PARTNER_STRESS,
+    SELF,
+    TOLD,
+    compute_features,
+)
 from metagraph.generation.networks import (
     ACTIVITY,
     FPS,
