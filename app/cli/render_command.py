@@ -25,6 +25,7 @@ from metagraph.playback.bake import bake
 if TYPE_CHECKING:
     from app.stage.props import PropMeshes
     from metagraph.graph.timeline import Cut
+    from metagraph.motion.character_mesh import CharacterMesh
     from metagraph.speech.captions import Caption
     from preview.scene import SceneTheme
 
@@ -480,17 +481,23 @@ def bake_to(
     elif out.suffix == ".npz":
         write_smpl(motion, out)
     else:
-        body = None
-        if project.character is not None:
-            from metagraph.formats.gltf.reader import read_character
-
-            body = read_character(folder / project.character).without(project.hidden)
-            if body.skeleton != project.skeleton or not len(body.triangles):
-                body = None  # it would not move with this motion
+        body = read_body(project, folder)
         if out.suffix == ".usda":
             write_usd(out, motion.skeleton, [motion], body)
         else:
             write_glb(out, [motion], body)
+
+
+def read_body(project: Project, folder: Path) -> CharacterMesh | None:
+    """Return the character that a project's motion moves; None where it has none, or one of another
+    skeleton.
+    """
+    if project.character is None:
+        return None
+    from metagraph.formats.gltf.reader import read_character
+
+    body = read_character(folder / project.character).without(project.hidden)
+    return body if body.skeleton == project.skeleton and len(body.triangles) else None
 
 
 def _doing(shown: ShownPlayback, seconds: float) -> str:
