@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 VIDEOS = (".mp4", ".mov", ".webm")
 MOTION = (".glb", ".usda", ".bvh", ".npz")  # what `bake_to` writes
-NAMED = 12  # clips that are told by name at most
+NAMED = 12  # clips that an error lists at most
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -489,7 +489,7 @@ def bake_to(
 
 
 def read_body(project: Project, folder: Path) -> CharacterMesh | None:
-    """Return the character that a project's motion moves; None where it has none, or one of another
+    """Return the character that a project's motion moves; None if it has none, or one of another
     skeleton.
     """
     if project.character is None:

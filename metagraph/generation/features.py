@@ -47,12 +47,12 @@ SELF, PARTNER, BOTH, NONE = range(ACTIVITY)
 PITCH, MARKS = 2, 5  # numbers of a frame
 TOLD = MARKS + ACTIVITY  # numbers of a frame that are not of the sound
 OWN_STRESS, PARTNER_STRESS, RESPONSE, HESITATION, KNOWN = range(MARKS)
-REACH = 3  # frames around a stress that tell of it
+REACH = 3  # frames on both sides of a stress over which its mark fades
 STEP = 3.0  # semitones
 LOWEST, HIGHEST = 60, 400  # hertz of a voice
 REPEATED = 0.45  # how much a voice repeats itself after a period, 1 exactly
 QUIETEST = 1e-3  # deviation of samples: -60 dB of full scale
-ADAPTED = 250  # frames with a voice after which a speaker's usual pitch is as good as known
+ADAPTED = 250  # frames with a voice after which a speaker's usual pitch changes no faster
 
 
 class FeatureError(ValueError):

@@ -2,7 +2,7 @@
 
 Each sound in FOLDER is a recording: of one person, or of two who have a channel each; a transcript of the
 same name is read with it. Who says what when is read as for any user's recording, and the driver performs it
-on the sample project's graph. Told for each who speaks:
+on the sample project's graph. Printed for each who speaks:
 
     peaks      hand speed within 0.25 s of the speaker's own stresses, over its mean; `chance` is that of the
                same stresses moved in time, round the end: its 95th percentile over 200 of them
@@ -72,7 +72,7 @@ RAISED, SHIFTS = 0.15, 200
 
 
 def measure_hands(motion: MotionSample, loud: Array, of: Array) -> dict[str, float]:
-    """Return what is told of a motion. loud: seconds; of: chance of its own for the shifts."""
+    """Return the measures of a motion. loud: seconds; of: chance of its own for the shifts."""
     hands = motion.landmarks[:, list(WRISTS)]
     speed = np.linalg.norm(np.diff(hands, axis=0), axis=-1).mean(1) * FPS
     at = (np.arange(len(speed)) + 0.5) / FPS
