@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.averaging import Averaging
+from metagraph.generation.averaging import RESTING, TOKENS_RESTING, Averaging
 from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.features import (
     RATE,
@@ -83,7 +83,8 @@ class TakeSampler:
         adaptive = smooth is None and (
             isinstance(sizes, MatchingSizes) or (isinstance(sizes, FlowSizes) and sizes.span > 1)
         )
-        self._averaging = Averaging() if adaptive else Averaging(smooth or 0.0, None)
+        resting = TOKENS_RESTING if isinstance(sizes, MatchingSizes) else RESTING
+        self._averaging = Averaging(resting=resting) if adaptive else Averaging(smooth or 0.0, None)
         quiet = make_silence(model.card.tracks)
         # Features that are still needed, from `before` frames before the next one made.
         self._heard = model.heard(np.tile(quiet, (self._made.before, 1)))
