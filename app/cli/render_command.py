@@ -255,6 +255,11 @@ def run(options: Namespace) -> int:
         )
     for one in shown.everyone:
         declare_inputs(*list_project_files(one.project, one.folder or folder))
+    props = load_props(shown, folder)
+    if props is not None:
+        from app.stage.prop_contacts import rest_on_props
+
+        shown = rest_on_props(shown, props)
     if options.out.suffix in MOTION:
         claim(*_outs(options.out, shown))
         for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):
@@ -272,7 +277,6 @@ def run(options: Namespace) -> int:
         if options.transparent:
             look = replace(look, transparent=True)
         direction = _direction(project, options, shown, folder, seen)
-        props = load_props(shown, folder)
         shot = Shot(
             options.seconds,
             size,
