@@ -21,7 +21,8 @@ def list_crowd_cases(project: Project, seeds: range = SEEDS) -> Iterator[ScriptC
     """Yield cases of crowds of requests, the models on in every other one."""
     for seed in seeds:
         chance = Random(1000 + seed)
-        now, steps, known = 0.0, [], []
+        now, steps = 0.0, list[ScriptStep]()
+        known: list[str] = []
         for n in range(10):
             asks = []
             for k in range(chance.choice((0, 1, 2, 4))):
