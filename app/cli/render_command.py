@@ -102,6 +102,11 @@ def add_arguments(parser: ArgumentParser) -> None:
         action="store_true",
         help="draw nothing behind the character: .png, .mov and .webm have alpha",
     )
+    parser.add_argument(
+        "--depth-of-field",
+        action="store_true",
+        help="blur what is nearer or farther than the face of who is framed",
+    )
 
 
 def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
@@ -220,6 +225,8 @@ def _check_options(options: Namespace) -> None:
         raise ValueError(f"{options.out.suffix} has no transparency; write .png, .mov or .webm")
     if options.transparent and options.background is not None:
         raise ValueError("give --transparent or --background, not both")
+    if options.transparent and options.depth_of_field:
+        raise ValueError("give --transparent or --depth-of-field, not both")
     if options.out.suffix != ".bvh" and (options.bvh_order != "ZXY" or options.bvh_metres):
         raise ValueError("--bvh-order and --bvh-metres are for .bvh files")
 
@@ -272,6 +279,8 @@ def run(options: Namespace) -> int:
         look = make_render_look(project, folder, options.theme, options.light, options.background)
         if options.transparent:
             look = replace(look, transparent=True)
+        if options.depth_of_field:
+            look = replace(look, blurred=True)
         direction = _direction(project, options, shown, folder, seen)
         shot = Shot(
             options.seconds,

@@ -20,8 +20,6 @@ SPARE = 0.02  # metres by which a hand is within reach after a prop was fitted
 _known: Remembered[np.ndarray] = Remembered(
     lambda project: (*gather_face_parts(project), project.graphs, project.life)
 )
-    lambda project: (*gather_face_parts(project), project.graphs, project.life)
-)
 
 
 def measure_hands_below(project: Project, tops: tuple[PropTop, ...]) -> tuple[float, float] | None:
