@@ -122,10 +122,10 @@ def _to_vector(of: Array) -> tuple[float, float, float]:
 
 
 def _list_fingers(skeleton: Skeleton, roles: Mapping[str, int], side: str) -> list[list[int]]:
-    """Return the joints of the outer fingers of a hand, the index finger first."""
+    """Return the joints of the fingers of a hand that reach beyond the others, the index finger first."""
     lines = [
         [roles[name] for n in (1, 2, 3) if (name := f"{side}_{finger}_{n}") in roles]
-        for finger in ("index", "little")
+        for finger in ("index", "middle", "little")
     ]
     return [line for line in lines if line]
 

@@ -100,3 +100,35 @@ def test_a_clip_alone_and_a_prop_whose_file_is_not_read_yet_change_nothing() -> 
     assert rest_on_props(shown, PropMeshes(SAMPLES)) is shown
     alone = replace(shown, clip=next(iter(project.clips)))
     assert rest_on_props(alone, place(DESK)[1]) is alone
+
+
+def test_two_who_sit_at_a_desk_have_chairs_no_stools_and_hands_on_it() -> None:
+    """The project that the manual films: cups stand on the desk, no hand is in it, nobody sits on nothing."""
+    from app.stage.conversation_plans import ConversationPlans
+    from app.stage.stools import make_stools
+    from metagraph.motion.character_mesh import CharacterMesh
+    from sample_clips.make.at_a_desk import make_desk_talk
+
+    project = make_desk_talk()
+    meshes, problems = read_prop_meshes(project, SAMPLES)
+    assert problems == []
+    shown = rest_on_props(ConversationPlans().show(project, "talk", SAMPLES), meshes)
+    assert len(shown.everyone) == 2 and shown.notes == ()
+    times = np.arange(0, 32, 1 / 10)
+    for one in shown.everyone:
+        assert make_stools(one, meshes=meshes) == ()
+        pose, skeleton = one.pose(times), one.skeleton
+        assert pose is not None and skeleton is not None
+        _, at = skeleton.globals(pose)
+        (desk,) = (top for top in one.tops if 0.7 < top.height < 0.8)
+        fingers = at[:, [j for j, name in enumerate(skeleton.names) if name[-1] in "123"]]
+        low = desk.find_heights(fingers) - fingers[..., 1]
+        in_board = desk.contains(fingers) & (low > 0.008) & (low < 0.03)
+        assert in_board.any(1).mean() < 0.03  # on the way from the seat to the desk
+        resting = np.abs(at[:, skeleton.index("RightHand"), 1] - 0.76) < 0.02
+        assert resting.mean() > 0.2
+    heights = {}
+    for prop in project.props.values():
+        mesh: CharacterMesh = meshes.meshes[meshes.locate(prop.path)]
+        heights.setdefault(prop.name, prop.at[1] + float(mesh.positions[:, 1].min()))
+    assert heights["cup"] == pytest.approx(0.74, abs=1e-3)
