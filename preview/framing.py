@@ -102,7 +102,7 @@ def has_studio_lamp(theme: SceneTheme) -> bool:
 
 def find_focus(camera: Camera, actors: Sequence[Actor]) -> float | None:
     """Return how far before a camera the face is on which it is focused, metres: of several that of whom the
-    picture's middle is nearest to, and between two in the middle of both. None where no face is before it.
+    picture's middle is nearest to, and between two in the middle of both. None if no face is before it.
     """
     far, weights = [], []
     for actor in actors:

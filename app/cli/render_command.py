@@ -260,9 +260,9 @@ def run(options: Namespace) -> int:
         declare_inputs(*list_project_files(one.project, one.folder or folder))
     props = load_props(shown, folder)
     if props is not None:
-        from app.stage.prop_contacts import rest_on_props
+        from app.stage.prop_contacts import put_on_props
 
-        shown = rest_on_props(shown, props)
+        shown = put_on_props(shown, props)
     if options.out.suffix in MOTION:
         claim(*_outs(options.out, shown))
         for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):

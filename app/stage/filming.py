@@ -56,7 +56,7 @@ def render_pictures(
     of the projects' props, None to draw none.
     """
     from app.stage.cutting import Filmed
-    from app.stage.prop_contacts import rest_on_props
+    from app.stage.prop_contacts import put_on_props
     from app.stage.stools import make_stools
     from preview.camera import make_whole_figure_camera
     from preview.drawing_apart import draw_scenes
@@ -66,7 +66,7 @@ def render_pictures(
     theme = THEMES[look] if isinstance(look, str) else look
 
     if props is not None:
-        seen = [(figure, rest_on_props(shown, props)) for figure, shown in seen]
+        seen = [(figure, put_on_props(shown, props)) for figure, shown in seen]
     seats = tuple(one for of, shown in seen for one in make_stools(shown, seat, of, props))
     figure, first = seen[0]
     pose = first.pose(float(times[0])) if len(seen) == 1 and not callable(camera) else None

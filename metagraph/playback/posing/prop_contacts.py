@@ -25,7 +25,7 @@ from metagraph.motion.prop_solve import (
     HandRest,
     RestingRig,
     lift_feet,
-    rest_hands,
+    put_hands_on_tops,
     set_carried,
 )
 from metagraph.motion.prop_tops import PropTop
@@ -47,7 +47,7 @@ HANDS, FEET = 11, 7  # samples over which what a top does to them sets in, half 
 ARM = 0.6  # of the height: from the hips to stretched fingers, and a step
 REACH = 0.22  # metres below a top up to which a hand is brought onto it
 NEAR, FAR = 0.03, 0.07  # metres above a top: a hand comes to rest, and does not
-SLOW, QUICK = 0.12, 0.35  # metres a second: likewise
+SLOW, QUICK = 0.12, 0.35  # metres a second: it does, and does not
 MOST_PITCH, MOST_ROLL = 0.7, 0.5  # radians by which a hand is laid flat
 UPRIGHT = 0.25  # cosine of a roll: a hand that is rolled so far stays rolled
 DEEP = 0.05  # metres below a top from which on a hand is laid flat on it
@@ -208,7 +208,7 @@ class RestingStage:
                     _put(self.legs.body, one, rotations[n], translations[n])
             if busy_hands[n] and self.rig is not None:
                 one = _pick(self.rig.body, rotations[n], translations[n])
-                if rest_hands(self.rig, one, self._list_rests(found, n)):
+                if put_hands_on_tops(self.rig, one, self._list_rests(found, n)):
                     _put(self.rig.body, one, rotations[n], None)
         return Pose(rotations, translations)
 
