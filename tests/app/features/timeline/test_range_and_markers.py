@@ -119,6 +119,26 @@ def test_the_range_can_be_written_alone(stage, monkeypatch):
     dialog.close()
 
 
+def test_depth_of_field_is_written_only_with_something_behind_the_character(stage, monkeypatch):
+    from app.features.render import render_dialog
+
+    dialog = render_dialog.RenderDialog(stage.performance, stage.session, stage.jobs, stage.window)
+    orders = []
+    monkeypatch.setattr(
+        render_dialog, "write_rendering", lambda project, folder, order, job: orders.append(order)
+    )
+    monkeypatch.setattr(dialog, "_done", lambda path: None)
+    dialog.blurred.setChecked(True)
+    for kind in (".mp4", ".mov"):
+        dialog.kind.setCurrentIndex(dialog.kind.findData(kind))
+        dialog._suffixed()
+        dialog._write()
+        stage.wait(lambda: not stage.jobs.running)
+    assert [order.blurred for order in orders] == [True, False]
+    assert not dialog.blurred.isEnabled()
+    dialog.close()
+
+
 def test_markers_are_added_named_moved_gone_to_and_removed(stage, monkeypatch):
     view, timeline, transport = stage.timeline.lanes, stage.performance.timeline, stage.session.transport
     transport.seek(3.0)
