@@ -243,6 +243,28 @@ def test_each_list_is_installed_with_those_before_it_and_serves_whoever_needs_le
     assert pinned.environment(0) is None and not started  # all that the tests need is enough
 
 
+def test_what_only_tests_need_is_installed_by_uv_and_by_pip_where_uv_fails(
+    pinned: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (pinned.ROOT / pinned.LISTS[2]).write_text("uv==1.0")
+    make_python(pinned)
+    for fails in (False, True):
+        started: list[list[str]] = []
+
+        def call(
+            command: list[str], fails: bool = fails, started: list[list[str]] = started, **_: object
+        ) -> int:
+            started.append(command)
+            return int(fails and "uv" in command)
+
+        monkeypatch.setattr(pinned.subprocess, "call", call)
+        assert pinned.environment(2) is None
+        by = [command[2] for command in started if pinned.LISTS[2] in listed(command)]
+        assert by == (["uv", "pip"] if fails else ["uv"])
+        assert any("uv==1.0" in command for command in started)
+        pinned.stamp(2).unlink()
+
+
 def test_a_compiler_that_was_added_is_kept_up_to_date_with_the_rest(
     pinned: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:

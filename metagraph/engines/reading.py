@@ -22,6 +22,7 @@ from metagraph.errors import FileError
 from metagraph.formats.clips import digest
 from metagraph.formats.project.data import decode_markov, decode_skeleton
 from metagraph.formats.project.fields import DataError
+from metagraph.formats.takes import REPAIRS
 from metagraph.graph.face.rig import CHANNELS
 from metagraph.graph.model import (
     LAYERS,
@@ -151,7 +152,7 @@ def _clips(
     if motions:
         from metagraph.formats.gltf.reader import read_gltf_clips
 
-        takes = read_gltf_clips(find_glb_beside(path, document))
+        takes = read_gltf_clips(find_glb_beside(path, document), REPAIRS)  # as other runtimes read it
     # Clips of one frame are read behind the longer ones.
     every = [x.animation for x in document.clips]
     longer = sorted(x.animation for x in document.clips if x.frames > 1) or every

@@ -23,6 +23,7 @@ from metagraph.engines.script import make_script_cases
 from metagraph.engines.script_boundaries import list_boundary_cases
 from metagraph.engines.script_parameters import list_settings, run_settings
 from metagraph.engines.script_parts import ScriptCase, ScriptStep
+from metagraph.engines.script_rules import find_rule_answer, list_rule_rows
 from metagraph.engines.script_sounds import find_heard, list_streams
 from metagraph.engines.script_sympathy import find_sympathies, list_taken_moods
 from metagraph.engines.script_talk import analyse_talk, list_talks
@@ -92,7 +93,8 @@ def list_cases(project: Project) -> Iterator[ScriptCase]:
 
 def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None, common: bool = True) -> Path:
     """Write the vectors of an export beside its JSON; return the file. chosen: the cases, all that suit it
-    when None. common: also what is the same for every character: sounds, texts, others' moods.
+    when None. common: also what is the same for every character: sounds, texts, others'
+    moods, single rules.
 
     Raises FileError when the export cannot be read or the file cannot be written.
     """
@@ -105,7 +107,12 @@ def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None, comm
         "hashes": [[seed, list(words), key32(seed, *words)] for seed, words in HASHES],
         "described": list_offered_requests(project),
         **(
-            {"heard": list_streams(), "talked": list_talks(), "sympathies": list_taken_moods()}
+            {
+                "heard": list_streams(),
+                "talked": list_talks(),
+                "sympathies": list_taken_moods(),
+                "rules": list_rule_rows(),
+            }
             if common
             else {}
         ),
@@ -348,6 +355,9 @@ def check_vectors(folder: Path, project: Project | None = None) -> Outcome:
         found = find_sympathies(row)
         wrong = _unlike(found, {name: row[name] for name in found}, f"sympathies[{n}]")
         out.failures += [("sympathies", what) for what in wrong]
+    for n, row in enumerate(data.get("rules", ())):
+        wrong = _unlike(find_rule_answer(row), row[4], f"rules[{n}], {row[0]}")
+        out.failures += [("rules", what) for what in wrong]
     if "settings" in data:
         pairs = [(row["name"], row["value"]) for row in data["settings"]]
         wrong = _unlike(run_settings(project, pairs), data["settings"], "settings")

@@ -58,7 +58,8 @@ LANGUAGES = {
         ".js",
         (
             "character.js", "describe.js", "glb.js", "graph.js", "three.js", "index.js", "words.js",
-            "basics.js", "avatar", "react.js", "element.js", "stage.js", "sounds.js", "meshopt",
+            "basics.js", "single_rules.js", "avatar", "react.js", "element.js", "stage.js", "sounds.js",
+            "meshopt",
         ),
     ),
     "csharp": Language(
@@ -67,7 +68,7 @@ LANGUAGES = {
         (
             "Component/", "Editor/", "Tests/", "Samples~/", "Character.cs", "Describe.cs", "Glb.cs",
             "Graph.cs", "Json.cs", "Loading", "Meshopt", "SharedGraphs", "Basics.cs", "Language.cs",
-            "LifeSettings.cs", "Clip.cs",
+            "LifeSettings.cs", "Clip.cs", "SingleRules.cs", "LettersTable.cs",
         ),
         texts='@"(?:""|[^"])*"|' + Language.texts,
     ),
@@ -76,7 +77,8 @@ LANGUAGES = {
         ".gd",
         (
             "metagraph_character", "plugin.gd", "conformance.gd", "character.gd", "check.gd",
-            "describe.gd", "glb.gd", "graph.gd", "shim", "util.gd", "bones.gd", "clip.gd",
+            "describe.gd", "glb.gd", "graph.gd", "shim", "util.gd", "bones.gd", "clip.gd", "single_rules.gd",
+            "letters_table.gd",
         ),
         comments=r"#[^\n]*",
         texts=r'"""(?:.|\n)*?"""|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'',
@@ -86,7 +88,7 @@ LANGUAGES = {
         ".hpp",
         (
             "language.hpp", "json.hpp", "glb.hpp", "graph.hpp", "loading", "describe", "character.hpp",
-            "clip", "conformance", "table", "meshopt",
+            "clip", "conformance", "table", "meshopt", "single_rules",
         ),
     ),
 }  # fmt: skip
@@ -256,7 +258,7 @@ class CommandRunner:
 
     def _commands(self) -> list[list[str]]:
         """The folder that notices most comes first, so that most changes cost a tenth of all vectors."""
-        every = sorted(vector_folders(), key=lambda folder: folder.name != "stick")
+        every = vector_folders()
         parts = [[str(f) for f in part] for part in (every[:1], every[1:]) if part]
         if self.language == "csharp":
             sources = [
@@ -293,7 +295,8 @@ class CommandRunner:
 
 
 def vector_folders() -> list[Path]:
-    return sorted(p for p in VECTORS.iterdir() if p.is_dir())
+    """Return all folders, the one that notices most first."""
+    return sorted((p for p in VECTORS.iterdir() if p.is_dir()), key=lambda p: (p.name != "stick", p.name))
 
 
 def runner(language: str, scratch: Path) -> NodeRunner | CommandRunner:

@@ -213,6 +213,18 @@ def test_motion_in_the_glb_is_the_clips_motion(sample: Project, exported: Any) -
         assert np.abs(a.translations - b.translations).max() < 2e-4
 
 
+def test_a_bind_pose_that_was_exported_is_read_back(toy: Any, tmp_path: Path) -> None:
+    whole = toy.clip("wave", 1.0, 1.3)
+    rotations = whole.rotations.copy()
+    rotations[0] = toy.skeleton.rest_rotations
+    project = edits.add_clips(Project("bound"), [("wave.glb", 0, "", replace(whole, rotations=rotations))])
+    project = edits.add_stance(project, "arms", "up", list(project.clips))
+    made = export_project(project, tmp_path)
+    assert "bind pose" in read_gltf_clips(made.glb)[0].notes[-1], "a file that somebody imports is mended"
+    for entry in read_export(made.json, resolved=True).clips.values():
+        assert entry.motion is not None and entry.motion.frames == entry.frames
+
+
 @pytest.mark.nightly
 def test_a_plan_of_what_was_read_back_is_the_same_and_looks_the_same(sample: Project, exported: Any) -> None:
     back = read_export(exported.json)

@@ -111,6 +111,7 @@ LISTING = (
     Translated("metagraph.playback.planning.meaning", "meaning"),
     Translated("metagraph.speech.word_gestures", "word_gestures"),
     Translated("metagraph.speech.spoken_so_far", "spoken_so_far"),
+    Translated("metagraph.engines.single_rules", "single_rules"),
 )
 
 # Modules that each runtime has of its own, with what translated ones take from them.

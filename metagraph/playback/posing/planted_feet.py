@@ -71,18 +71,18 @@ def foot_goals(
     goes = cue.end - _leaving(track, cue)
     if time >= came and time < goes:
         return []
-    here = _row(track, cue_seconds(cue, time))
+    here = foot_row(track, cue_seconds(cue, time))
     if time < came:
         at = min(time, cue.start + cue.blend_in)
         before = _stance(project, tracks, height, plan, place, at)
         first = _stance(project, tracks, height, plan, place, cue.start)
-        last = _row(track, cue_seconds(cue, came))
-        return _stepped(height, before, here, first, last, time - cue.start, came - cue.start)
+        last = foot_row(track, cue_seconds(cue, came))
+        return stepped(height, before, here, first, last, time - cue.start, came - cue.start)
     at = max(time, cue.end - cue.blend_out)
     after = _stance(project, tracks, height, plan, place, at)
-    first = _row(track, cue_seconds(cue, goes))
+    first = foot_row(track, cue_seconds(cue, goes))
     last = _stance(project, tracks, height, plan, place, cue.end)
-    return _stepped(height, here, after, first, last, time - goes, cue.end - goes)
+    return stepped(height, here, after, first, last, time - goes, cue.end - goes)
 
 
 def _entering(track: FootTrack, cue: Cue) -> float:
@@ -108,11 +108,11 @@ def _lasting(track: FootTrack, cue: Cue, blend: float, edge: float, way: float) 
 
 
 def _stands(track: FootTrack, seconds: float) -> bool:
-    goals = _row(track, seconds)
+    goals = foot_row(track, seconds)
     return goals[0].planted >= 1.0 and goals[1].planted >= 1.0
 
 
-def _stepped(
+def stepped(
     height: float,
     before: Sequence[FootGoal],
     after: Sequence[FootGoal],
@@ -199,7 +199,7 @@ def _stance(
         return goals
     old = plan.rests[place - 1]
     ends = rest.fade_start + rest.fade
-    return _stepped(
+    return stepped(
         height,
         _loop(project, tracks, height, old, time),
         goals,
@@ -218,15 +218,19 @@ def _loop(
     if track is None or len(track.rows) == 0:
         return []
     spot = loop_spot(project, rest, time)
-    here = _row(track, spot.seconds)
+    here = foot_row(track, spot.seconds)
     if spot.over >= 1.0:
         return here
     seam = spot.meets - project.span(rest.action)[0]
-    before, leaves, meets = _row(track, spot.other), _row(track, spot.leaves), _row(track, spot.meets)
-    return _stepped(height, before, here, leaves, meets, spot.over * seam, seam)
+    before, leaves, meets = (
+        foot_row(track, spot.other),
+        foot_row(track, spot.leaves),
+        foot_row(track, spot.meets),
+    )
+    return stepped(height, before, here, leaves, meets, spot.over * seam, seam)
 
 
-def _row(track: FootTrack, seconds: float) -> list[FootGoal]:
+def foot_row(track: FootTrack, seconds: float) -> list[FootGoal]:
     """Return where a clip's feet are at a second of the clip, interpolated linearly."""
     last = len(track.rows) - 1
     at = min(max(seconds * FOOT_RATE, 0.0), float(last))

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from metagraph.graph.edits import set_settings
-from metagraph.graph.model import LIMBS, MetaGraph, Project
+from metagraph.graph.model import LIMBS, Markov, MetaGraph, Project
 from metagraph.playback.plan import MetaRequest
 from metagraph.playback.planning import markov
 from metagraph.playback.planning.mood import Mood, MoodFrom, Moods
@@ -274,6 +274,17 @@ def _graph_in_cpp(project: Project, graph: MetaGraph) -> str:
             "List<Ref<MetaRequest>> requests() { List<Ref<MetaRequest>> out;", *asked, "return out; }",
             "Ref<Markov> chain() {",
             f"return made<Markov>(\"arms\", List<std::tuple<std::string, std::string>>{{{states}}},",
-            f"List<List<double>>{{{rows}}}, {markov.ARMS.gap!r}); }}",
+            f"List<List<double>>{{{rows}}}, {_rest_of_chain(markov.ARMS)}); }}",
         )
     )  # fmt: skip
+
+
+def _rest_of_chain(chain: Markov) -> str:
+    """Return what a model has besides states and their probabilities, as arguments."""
+    pairs = ", ".join(f"{{{a!r}, {b!r}}}" for a, b in chain.lengths)
+    modes = ", ".join("{" + ", ".join(map(repr, row)) + "}" for row in chain.modes)
+    return (
+        f"{chain.gap!r}, {chain.positive!r}, {chain.negative!r}, "
+        f"List<std::string>{{{', '.join(map(_text, chain.tags))}}}, "
+        f"List<std::tuple<double, double>>{{{pairs}}}, List<List<double>>{{{modes}}}"
+    )

@@ -22,6 +22,15 @@ public:
         }
         const List<std::string> pairs = letters(letters_table::PAIRS);
         for (std::size_t n = 0; n + 1 < pairs.size(); n += 2) plain_[pairs[n]] = {pairs[n + 1]};
+        List<std::string> word;
+        for (const auto& letter : letters(letters_table::SPELLED)) {
+            if (letter != " ") {
+                word.push_back(letter);
+            } else {
+                plain_[word.front()] = List<std::string>(word.begin() + 1, word.end());
+                word.clear();
+            }
+        }
     }
 
     /// A text's code points, a text each; bytes that are no UTF-8 stand alone.

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "metagraph.hpp"
+#include "single_rules.hpp"
 #include "spoken_so_far.hpp"
 #include "sympathy.hpp"
 
@@ -265,6 +266,18 @@ inline Json talk_of(const Json& row) {
     return Json::object({{"sentences", sentences}, {"words", words}, {"asks", asks}});
 }
 
+/// What a single rule answers.
+inline Json answer_of(const Json& row) {
+    List<double> numbers;
+    for (const Json& x : row.items[2].items) numbers.push_back(x.number);
+    List<std::string> texts;
+    for (const Json& x : row.items[3].items) texts.push_back(x.text);
+    Json out = Json::list();
+    const auto seed = static_cast<std::uint32_t>(row.items[1].number);
+    for (const double x : single_rules::answer_rule(voice::alphabet(), seed, row.items[0].text, numbers, texts)) out.items.push_back(x);
+    return out;
+}
+
 /// What is taken up of another's moods, and whose laughs are joined in.
 inline Json sympathies_of(const Json& row) {
     auto told = [&row](const char* name) {
@@ -392,6 +405,15 @@ inline Verdict run(const std::string& folder) {
             const Json wanted = Json::list({*row.find("taken"), *row.find("along")});
             const std::string told = difference(sympathies_of(row), wanted, tolerance.find("seconds")->number, "sympathies");
             if (!told.empty()) failed("sympathies", told);
+        }
+        done(before);
+    }
+    if (const Json* rules = vectors.find("rules")) {
+        before = out.failures.size();
+        for (const Json& row : rules->items) {
+            const std::string where = "rules, " + row.items[0].text;
+            const std::string told = difference(answer_of(row), row.items[4], tolerance.find("seconds")->number, where);
+            if (!told.empty()) failed("rules", told);
         }
         done(before);
     }

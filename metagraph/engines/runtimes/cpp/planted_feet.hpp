@@ -46,7 +46,7 @@ inline double _entering(const Ref<FootTrack>& track, const Ref<Cue>& cue);
 inline double _leaving(const Ref<FootTrack>& track, const Ref<Cue>& cue);
 inline double _lasting(const Ref<FootTrack>& track, const Ref<Cue>& cue, double blend, double edge, double way);
 inline bool _stands(const Ref<FootTrack>& track, double seconds);
-inline List<Ref<FootGoal>> _stepped(
+inline List<Ref<FootGoal>> stepped(
     double height,
     const List<Ref<FootGoal>>& before,
     const List<Ref<FootGoal>>& after,
@@ -74,7 +74,7 @@ inline List<Ref<FootGoal>> _loop(
     const Ref<Rest>& rest,
     double time
 );
-inline List<Ref<FootGoal>> _row(const Ref<FootTrack>& track, double seconds);
+inline List<Ref<FootGoal>> foot_row(const Ref<FootTrack>& track, double seconds);
 
 }  // namespace planted_feet
 
@@ -123,7 +123,7 @@ inline List<Ref<FootGoal>> foot_goals(
     if (time >= came && time < goes) {
         return List<Ref<FootGoal>>{};
     }
-    List<Ref<FootGoal>> here = planted_feet::_row(track, cue_times::cue_seconds(cue, time));
+    List<Ref<FootGoal>> here = planted_feet::foot_row(track, cue_times::cue_seconds(cue, time));
     double at{};
     List<Ref<FootGoal>> first{};
     List<Ref<FootGoal>> last{};
@@ -131,14 +131,14 @@ inline List<Ref<FootGoal>> foot_goals(
         at = std::min(time, cue->start + cue->blend_in);
         List<Ref<FootGoal>> before = planted_feet::_stance(project, tracks, height, plan, place, at);
         first = planted_feet::_stance(project, tracks, height, plan, place, cue->start);
-        last = planted_feet::_row(track, cue_times::cue_seconds(cue, came));
-        return planted_feet::_stepped(height, before, here, first, last, time - cue->start, came - cue->start);
+        last = planted_feet::foot_row(track, cue_times::cue_seconds(cue, came));
+        return planted_feet::stepped(height, before, here, first, last, time - cue->start, came - cue->start);
     }
     at = std::max(time, cue->end - cue->blend_out);
     List<Ref<FootGoal>> after = planted_feet::_stance(project, tracks, height, plan, place, at);
-    first = planted_feet::_row(track, cue_times::cue_seconds(cue, goes));
+    first = planted_feet::foot_row(track, cue_times::cue_seconds(cue, goes));
     last = planted_feet::_stance(project, tracks, height, plan, place, cue->end);
-    return planted_feet::_stepped(height, here, after, first, last, time - goes, cue->end - goes);
+    return planted_feet::stepped(height, here, after, first, last, time - goes, cue->end - goes);
 }
 
 /// Return how long the feet take to enter a cue: its blend, and longer while it stands.
@@ -167,13 +167,13 @@ inline double _lasting(const Ref<FootTrack>& track, const Ref<Cue>& cue, double 
 }
 
 inline bool _stands(const Ref<FootTrack>& track, double seconds) {
-    List<Ref<FootGoal>> goals = planted_feet::_row(track, seconds);
+    List<Ref<FootGoal>> goals = planted_feet::foot_row(track, seconds);
     return lang::at(goals, 0)->planted >= 1.0 && lang::at(goals, 1)->planted >= 1.0;
 }
 
 /// Return both feet during a step, after `passed` of its `seconds`. `first` and `last` are their places when it begins
 /// and ends, which decide the order and size of the steps.
-inline List<Ref<FootGoal>> _stepped(
+inline List<Ref<FootGoal>> stepped(
     double height,
     const List<Ref<FootGoal>>& before,
     const List<Ref<FootGoal>>& after,
@@ -290,7 +290,7 @@ inline List<Ref<FootGoal>> _stance(
     }
     Ref<Rest> old = lang::at(plan->rests, place - 1);
     double ends = rest->fade_start + rest->fade;
-    return planted_feet::_stepped(
+    return planted_feet::stepped(
         height,
         planted_feet::_loop(project, tracks, height, old, time),
         goals,
@@ -314,19 +314,19 @@ inline List<Ref<FootGoal>> _loop(
         return List<Ref<FootGoal>>{};
     }
     Ref<LoopSpot> spot = cue_times::loop_spot(project, rest, time);
-    List<Ref<FootGoal>> here = planted_feet::_row(track, spot->seconds);
+    List<Ref<FootGoal>> here = planted_feet::foot_row(track, spot->seconds);
     if (spot->over >= 1.0) {
         return here;
     }
     double seam = spot->meets - std::get<0>(project->span(rest->action));
-    List<Ref<FootGoal>> before = planted_feet::_row(track, spot->other);
-    List<Ref<FootGoal>> leaves = planted_feet::_row(track, spot->leaves);
-    List<Ref<FootGoal>> meets = planted_feet::_row(track, spot->meets);
-    return planted_feet::_stepped(height, before, here, leaves, meets, spot->over * seam, seam);
+    List<Ref<FootGoal>> before = planted_feet::foot_row(track, spot->other);
+    List<Ref<FootGoal>> leaves = planted_feet::foot_row(track, spot->leaves);
+    List<Ref<FootGoal>> meets = planted_feet::foot_row(track, spot->meets);
+    return planted_feet::stepped(height, before, here, leaves, meets, spot->over * seam, seam);
 }
 
 /// Return where a clip's feet are at a second of the clip, interpolated linearly.
-inline List<Ref<FootGoal>> _row(const Ref<FootTrack>& track, double seconds) {
+inline List<Ref<FootGoal>> foot_row(const Ref<FootTrack>& track, double seconds) {
     int last = lang::len(track->rows) - 1;
     double at = std::min(std::max(seconds * planted_feet::FOOT_RATE, 0.0), static_cast<double>(last));
     int low = std::min(static_cast<int>(std::floor(at)), std::max(0, last - 1));

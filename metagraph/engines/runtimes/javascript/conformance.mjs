@@ -9,6 +9,7 @@ import { answers } from "./hear.js";
 import { Mood, MoodFrom, Moods } from "./mood.js";
 import { Parameters } from "./parameters.js";
 import { positions } from "./rotation.js";
+import { answerRule } from "./single_rules.js";
 import { SpeechWatch } from "./speech_watch.js";
 import { spokenUntil } from "./spoken_so_far.js";
 import { Laugh, laughsAlong, moodsTakenUp } from "./sympathy.js";
@@ -16,7 +17,7 @@ import { lexiconOf } from "./talk.js";
 import { findForgotten } from "./utterances.js";
 import { ToldWord, gestureAsks, proposedFor, sentenceEnd, wordsOf } from "./word_gestures.js";
 
-const BESIDE = ["described", "heard", "talked", "sympathies", "settings"]; // what vectors have beside cases
+const BESIDE = ["described", "heard", "talked", "sympathies", "rules", "settings"]; // what vectors have beside cases
 
 /**
  * @param {object} vectors the content of vectors.json @param {string} exportJson @param {Uint8Array | ArrayBuffer} glbBytes
@@ -67,6 +68,13 @@ export function runVectors(vectors, exportJson, glbBytes) {
       for (const row of vectors.sympathies) {
         compare("sympathies", sympathiesOf(row), [row.taken, row.along], vectors.tolerance.seconds, fail);
       }
+    });
+  }
+  if (vectors.rules) {
+    run("rules", (fail) => {
+      vectors.rules.forEach(([rule, seed, numbers, texts, answer], n) => {
+        compare(`rules[${n}], ${rule}`, answerRule(ALPHABET, seed, rule, numbers, texts), answer, vectors.tolerance.seconds, fail);
+      });
     });
   }
   if (vectors.settings) {

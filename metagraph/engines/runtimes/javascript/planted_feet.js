@@ -75,7 +75,7 @@ export function footGoals(project, tracks, height, plan, cue, place, time) {
   if (time >= came && time < goes) {
     return [];
   }
-  const here = _row(track, cueSeconds(cue, time));
+  const here = footRow(track, cueSeconds(cue, time));
   let at;
   let first;
   let last;
@@ -83,14 +83,14 @@ export function footGoals(project, tracks, height, plan, cue, place, time) {
     at = Math.min(time, cue.start + cue.blendIn);
     const before = _stance(project, tracks, height, plan, place, at);
     first = _stance(project, tracks, height, plan, place, cue.start);
-    last = _row(track, cueSeconds(cue, came));
-    return _stepped(height, before, here, first, last, time - cue.start, came - cue.start);
+    last = footRow(track, cueSeconds(cue, came));
+    return stepped(height, before, here, first, last, time - cue.start, came - cue.start);
   }
   at = Math.max(time, cue.end - cue.blendOut);
   const after = _stance(project, tracks, height, plan, place, at);
-  first = _row(track, cueSeconds(cue, goes));
+  first = footRow(track, cueSeconds(cue, goes));
   last = _stance(project, tracks, height, plan, place, cue.end);
-  return _stepped(height, here, after, first, last, time - goes, cue.end - goes);
+  return stepped(height, here, after, first, last, time - goes, cue.end - goes);
 }
 
 /**
@@ -141,7 +141,7 @@ function _lasting(track, cue, blend, edge, way) {
  * @returns {boolean}
  */
 function _stands(track, seconds) {
-  const goals = _row(track, seconds);
+  const goals = footRow(track, seconds);
   return goals[0].planted >= 1 && goals[1].planted >= 1;
 }
 
@@ -157,7 +157,7 @@ function _stands(track, seconds) {
  * @param {number} seconds
  * @returns {FootGoal[]}
  */
-function _stepped(height, before, after, first, last, passed, seconds) {
+export function stepped(height, before, after, first, last, passed, seconds) {
   if (before.length === 0 || after.length === 0 || first.length === 0 || last.length === 0) {
     return [];
   }
@@ -275,7 +275,7 @@ function _stance(project, tracks, height, plan, place, time) {
   }
   const old = plan.rests[place - 1];
   const ends = rest.fadeStart + rest.fade;
-  return _stepped(
+  return stepped(
     height,
     _loop(project, tracks, height, old, time),
     goals,
@@ -301,15 +301,15 @@ function _loop(project, tracks, height, rest, time) {
     return [];
   }
   const spot = loopSpot(project, rest, time);
-  const here = _row(track, spot.seconds);
+  const here = footRow(track, spot.seconds);
   if (spot.over >= 1) {
     return here;
   }
   const seam = spot.meets - project.span(rest.action)[0];
-  const before = _row(track, spot.other);
-  const leaves = _row(track, spot.leaves);
-  const meets = _row(track, spot.meets);
-  return _stepped(height, before, here, leaves, meets, spot.over * seam, seam);
+  const before = footRow(track, spot.other);
+  const leaves = footRow(track, spot.leaves);
+  const meets = footRow(track, spot.meets);
+  return stepped(height, before, here, leaves, meets, spot.over * seam, seam);
 }
 
 /**
@@ -318,7 +318,7 @@ function _loop(project, tracks, height, rest, time) {
  * @param {number} seconds
  * @returns {FootGoal[]}
  */
-function _row(track, seconds) {
+export function footRow(track, seconds) {
   const last = track.rows.length - 1;
   const at = Math.min(Math.max(seconds * FOOT_RATE, 0), last);
   const low = Math.min(Math.floor(at), Math.max(0, last - 1));

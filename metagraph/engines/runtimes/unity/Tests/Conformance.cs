@@ -84,6 +84,13 @@ public static class Conformance
         {
             Compare(folder + ", sympathies", SympathiesOf(row), Row(row["taken"], row["along"]));
         }
+        foreach (List<object> row in vectors.Has("rules") ? List(vectors["rules"]) : new List<object>())
+        {
+            List<double> numbers = List(row[2]).ConvertAll(Number);
+            List<string> texts = List(row[3]).Cast<string>().ToList();
+            List<double> answer = SingleRulesRules.AnswerRule(Alphabet.Common, (uint)Number(row[1]), (string)row[0], numbers, texts);
+            Compare(folder + ", rules, " + (string)row[0], answer.Cast<object>().ToList(), row[4]);
+        }
         var values = new ParameterValues(graph.Parameters);
         foreach (JsonObject row in vectors.Has("settings") ? List(vectors["settings"]) : new List<object>())
         {

@@ -17,6 +17,7 @@ const Mood = preload("core/mood.gd")
 const Parameters = preload("core/parameters.gd")
 const Planner = preload("core/planner.gd")
 const Pose = preload("core/pose.gd")
+const SingleRules = preload("core/single_rules.gd")
 const SpeechWatch = preload("core/speech_watch.gd")
 const SpokenSoFar = preload("core/spoken_so_far.gd")
 const StreamedVoice = preload("core/streamed_voice.gd")
@@ -121,6 +122,14 @@ func _check(folder, only):
 		var apart = _unlike(_sympathies_of(row), [row.taken, row.along], "sympathies", data.tolerance.seconds)
 		if apart != "":
 			_fail("sympathies", apart)
+	for row in data.get("rules", []):
+		var numbers = []
+		for number in row[2]:
+			numbers.append(float(number))
+		var answer = SingleRules.answer_rule(graph.alphabet, int(row[1]), row[0], numbers, row[3])
+		var apart = _unlike(answer, row[4], "rules, %s" % row[0], data.tolerance.seconds)
+		if apart != "":
+			_fail("rules", apart)
 	var parameters = Parameters.new(graph.parameters)
 	for row in data.get("settings", []):
 		var made = parameters.request_for(row.name, row.value)

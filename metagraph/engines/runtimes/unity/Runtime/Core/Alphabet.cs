@@ -9,6 +9,38 @@ namespace Metagraph
     public sealed class Alphabet
     {
         public static readonly Alphabet Common = new Alphabet();
+        private static readonly Dictionary<string, List<string>> spelled = new Dictionary<string, List<string>>();
+        private static readonly Dictionary<int, string> kinds = new Dictionary<int, string>();
+
+        static Alphabet()
+        {
+            foreach (string word in LettersTable.Spelled.Split(new[] { ' ' }, StringSplitOptions.RemoveEmptyEntries))
+            {
+                spelled[word.Substring(0, 1)] = Common.Letters(word.Substring(1));
+            }
+            Mark("letter", LettersTable.Letters);
+            Mark("syllable", LettersTable.Syllables);
+            Mark("mark", LettersTable.Marks);
+            Mark("", LettersTable.Others);
+        }
+
+        private static void Mark(string kind, string runs)
+        {
+            int at = 0;
+            bool skips = true;
+            foreach (string number in runs.Split(' '))
+            {
+                int until = at + int.Parse(number, CultureInfo.InvariantCulture);
+                for (; at < until; at++)
+                {
+                    if (!skips)
+                    {
+                        kinds[at] = kind;
+                    }
+                }
+                skips = !skips;
+            }
+        }
 
         /// <summary>A text's code points, a text each.</summary>
         public List<string> Letters(string text)
@@ -41,7 +73,19 @@ namespace Metagraph
         /// <summary>A word in small letters without accents, a letter each.</summary>
         public List<string> Plain(string word)
         {
-            return Letters(Unmarked(Unmarked(word).ToLowerInvariant()).Replace("ß", "ss").Replace("ſ", "s"));
+            var found = new List<string>();
+            foreach (string letter in Letters(word))
+            {
+                if (spelled.TryGetValue(letter, out List<string> plain))
+                {
+                    found.AddRange(plain);
+                }
+                else
+                {
+                    found.AddRange(Letters(Unmarked(Unmarked(letter).ToLowerInvariant()).Replace("ß", "ss").Replace("ſ", "s")));
+                }
+            }
+            return found;
         }
 
         /// <summary>
@@ -50,6 +94,15 @@ namespace Metagraph
         /// </summary>
         public string Kind(string letter)
         {
+            int code = Code(letter);
+            if (kinds.TryGetValue(code, out string known))
+            {
+                return known;
+            }
+            if (code >= 0x20000 && code < 0x32000) // rare Han characters
+            {
+                return "syllable";
+            }
             if (!IsAlphanumeric(letter))
             {
                 return IsCombining(letter) ? "mark" : "";
@@ -94,6 +147,10 @@ namespace Metagraph
         /// </summary>
         private static bool IsCombining(string c)
         {
+            if (kinds.TryGetValue(char.ConvertToUtf32(c, 0), out string known))
+            {
+                return known == "mark";
+            }
             UnicodeCategory category = CharUnicodeInfo.GetUnicodeCategory(c, 0);
             if (category != UnicodeCategory.NonSpacingMark && category != UnicodeCategory.SpacingCombiningMark)
             {

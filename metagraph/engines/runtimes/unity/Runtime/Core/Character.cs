@@ -55,6 +55,7 @@ namespace Metagraph
         private int count;
         private readonly ParameterValues parameters;
         private readonly SpeechWatch speech = new SpeechWatch();
+        private Track watched; // whose speech was looked at last
         private double seen = double.NegativeInfinity, cutAt;
 
         public Character(Graph graph, CharacterOptions options = null)
@@ -241,9 +242,12 @@ namespace Metagraph
 
         private void PlanOn()
         {
-            foreach (string what in UtterancesRules.FindForgotten(Plan.Track, Now))
+            if (Plan.Track.Speeches.Exists(s => s.More))
             {
-                queue.Add(new Ask { Do = "finish", Id = what + ".0", What = what });
+                foreach (string what in UtterancesRules.FindForgotten(Plan.Track, Now))
+                {
+                    queue.Add(new Ask { Do = "finish", Id = what + ".0", What = what });
+                }
             }
             bool far = Plan.End >= Now + options.Ahead - Math.Min(Slack, options.Ahead / 2);
             if (queue.Count > 0 || !far)
@@ -290,18 +294,44 @@ namespace Metagraph
                     Note(cues[n].Start, cues[n].End, layer, cues[n].Action.Name, cues[n].Meta);
                 }
             }
-            foreach (SpeechEvent one in speech.Watch(Plan.Track.Speeches, seen, Now))
+            if (SpeechChanges())
             {
-                Insert(new CharacterEvent
+                foreach (SpeechEvent one in speech.Watch(Plan.Track.Speeches, seen, Now))
                 {
-                    Kind = one.Kind, Layer = "speech", Action = one.Said, Meta = one.Id, At = one.At, Reason = one.Reason,
-                });
+                    Insert(new CharacterEvent
+                    {
+                        Kind = one.Kind, Layer = "speech", Action = one.Said, Meta = one.Id, At = one.At, Reason = one.Reason,
+                    });
+                }
+                watched = Plan.Track;
             }
             seen = Now;
             if (events.Count > Remembered)
             {
                 events.RemoveRange(0, events.Count - Remembered);
             }
+        }
+
+        /// <summary>Whether speech may begin or end since the update before. To look for it makes garbage.</summary>
+        private bool SpeechChanges()
+        {
+            if (Plan.Track != watched)
+            {
+                return true;
+            }
+            foreach (Speech one in Plan.Track.Speeches)
+            {
+                if (IsNew(one.Start) || IsNew(one.End) || (one.Over != null && IsNew(one.Over.Value)))
+                {
+                    return true;
+                }
+            }
+            return false;
+        }
+
+        private bool IsNew(double at)
+        {
+            return at > seen && at <= Now;
         }
 
         private void Note(double start, double end, string layer, string action, string key)

@@ -77,7 +77,7 @@ namespace Metagraph
             {
                 return new List<FootGoal>();
             }
-            var here = Row(track, CueTimesRules.CueSeconds(cue, time));
+            var here = FootRow(track, CueTimesRules.CueSeconds(cue, time));
             double at = default(double);
             List<FootGoal> first = default(List<FootGoal>);
             List<FootGoal> last = default(List<FootGoal>);
@@ -86,12 +86,12 @@ namespace Metagraph
                 at = Math.Min(time, cue.Start + cue.BlendIn);
                 var before = Stance(project, tracks, height, plan, place, at);
                 first = Stance(project, tracks, height, plan, place, cue.Start);
-                last = Row(track, CueTimesRules.CueSeconds(cue, came));
+                last = FootRow(track, CueTimesRules.CueSeconds(cue, came));
                 return Stepped(height, before, here, first, last, time - cue.Start, came - cue.Start);
             }
             at = Math.Max(time, cue.End - cue.BlendOut);
             var after = Stance(project, tracks, height, plan, place, at);
-            first = Row(track, CueTimesRules.CueSeconds(cue, goes));
+            first = FootRow(track, CueTimesRules.CueSeconds(cue, goes));
             last = Stance(project, tracks, height, plan, place, cue.End);
             return Stepped(height, here, after, first, last, time - goes, cue.End - goes);
         }
@@ -127,7 +127,7 @@ namespace Metagraph
 
         private static bool Stands(FootTrack track, double seconds)
         {
-            var goals = Row(track, seconds);
+            var goals = FootRow(track, seconds);
             return goals[0].Planted >= 1.0 && goals[1].Planted >= 1.0;
         }
 
@@ -135,7 +135,7 @@ namespace Metagraph
         /// Return both feet during a step, after `passed` of its `seconds`. `first` and `last` are their places when it begins
         /// and ends, which decide the order and size of the steps.
         /// </summary>
-        private static List<FootGoal> Stepped(
+        public static List<FootGoal> Stepped(
             double height,
             List<FootGoal> before,
             List<FootGoal> after,
@@ -285,20 +285,20 @@ namespace Metagraph
                 return new List<FootGoal>();
             }
             var spot = CueTimesRules.LoopSpot(project, rest, time);
-            var here = Row(track, spot.Seconds);
+            var here = FootRow(track, spot.Seconds);
             if (spot.Over >= 1.0)
             {
                 return here;
             }
             var seam = spot.Meets - project.Span(rest.Action).Item1;
-            var before = Row(track, spot.Other);
-            var leaves = Row(track, spot.Leaves);
-            var meets = Row(track, spot.Meets);
+            var before = FootRow(track, spot.Other);
+            var leaves = FootRow(track, spot.Leaves);
+            var meets = FootRow(track, spot.Meets);
             return Stepped(height, before, here, leaves, meets, spot.Over * seam, seam);
         }
 
         /// <summary>Return where a clip's feet are at a second of the clip, interpolated linearly.</summary>
-        private static List<FootGoal> Row(FootTrack track, double seconds)
+        public static List<FootGoal> FootRow(FootTrack track, double seconds)
         {
             var last = track.Rows.Count - 1;
             var at = Math.Min(Math.Max(seconds * FootRate, 0.0), last);

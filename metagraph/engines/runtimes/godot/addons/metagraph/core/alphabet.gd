@@ -19,6 +19,8 @@ func _init(engine_shim):
 			_plain[accented[n]] = base
 	for n in range(0, Table.PAIRS.length(), 2):
 		_plain[Table.PAIRS[n]] = Table.PAIRS[n + 1]
+	for word in Table.SPELLED.split(" ", false):
+		_plain[word[0]] = word.substr(1, word.length() - 1)
 	for sort in [["letter", Table.LETTERS], ["digit", Table.DIGITS], ["syllable", Table.SYLLABLES], ["mark", Table.MARKS]]:
 		var edges = []
 		var at = 0

@@ -55,7 +55,7 @@ static func foot_goals(project, tracks, height, plan, cue, place, time):
 	var goes = cue.end - _leaving(track, cue)
 	if time >= came and time < goes:
 		return []
-	var here = _row(track, CueTimes.cue_seconds(cue, time))
+	var here = foot_row(track, CueTimes.cue_seconds(cue, time))
 	var at
 	var first
 	var last
@@ -63,13 +63,13 @@ static func foot_goals(project, tracks, height, plan, cue, place, time):
 		at = Util.least(time, cue.start + cue.blend_in)
 		var before = _stance(project, tracks, height, plan, place, at)
 		first = _stance(project, tracks, height, plan, place, cue.start)
-		last = _row(track, CueTimes.cue_seconds(cue, came))
-		return _stepped(height, before, here, first, last, time - cue.start, came - cue.start)
+		last = foot_row(track, CueTimes.cue_seconds(cue, came))
+		return stepped(height, before, here, first, last, time - cue.start, came - cue.start)
 	at = Util.most(time, cue.end - cue.blend_out)
 	var after = _stance(project, tracks, height, plan, place, at)
-	first = _row(track, CueTimes.cue_seconds(cue, goes))
+	first = foot_row(track, CueTimes.cue_seconds(cue, goes))
 	last = _stance(project, tracks, height, plan, place, cue.end)
-	return _stepped(height, here, after, first, last, time - goes, cue.end - goes)
+	return stepped(height, here, after, first, last, time - goes, cue.end - goes)
 
 
 # Return how long the feet take to enter a cue: its blend, and longer while it stands.
@@ -95,13 +95,13 @@ static func _lasting(track, cue, blend, edge, way):
 
 
 static func _stands(track, seconds):
-	var goals = _row(track, seconds)
+	var goals = foot_row(track, seconds)
 	return goals[0].planted >= 1.0 and goals[1].planted >= 1.0
 
 
 # Return both feet during a step, after `passed` of its `seconds`. `first` and `last` are their places when it begins and ends,
 # which decide the order and size of the steps.
-static func _stepped(height, before, after, first, last, passed, seconds):
+static func stepped(height, before, after, first, last, passed, seconds):
 	if before.size() == 0 or after.size() == 0 or first.size() == 0 or last.size() == 0:
 		return []
 	var ways = []
@@ -183,7 +183,7 @@ static func _stance(project, tracks, height, plan, place, time):
 		return goals
 	var old = plan.rests[place - 1]
 	var ends = rest.fade_start + rest.fade
-	return _stepped(
+	return stepped(
 		height,
 		_loop(project, tracks, height, old, time),
 		goals,
@@ -200,18 +200,18 @@ static func _loop(project, tracks, height, rest, time):
 	if track == null or track.rows.size() == 0:
 		return []
 	var spot = CueTimes.loop_spot(project, rest, time)
-	var here = _row(track, spot.seconds)
+	var here = foot_row(track, spot.seconds)
 	if spot.over >= 1.0:
 		return here
 	var seam = spot.meets - project.span(rest.action)[0]
-	var before = _row(track, spot.other)
-	var leaves = _row(track, spot.leaves)
-	var meets = _row(track, spot.meets)
-	return _stepped(height, before, here, leaves, meets, spot.over * seam, seam)
+	var before = foot_row(track, spot.other)
+	var leaves = foot_row(track, spot.leaves)
+	var meets = foot_row(track, spot.meets)
+	return stepped(height, before, here, leaves, meets, spot.over * seam, seam)
 
 
 # Return where a clip's feet are at a second of the clip, interpolated linearly.
-static func _row(track, seconds):
+static func foot_row(track, seconds):
 	var last = track.rows.size() - 1
 	var at = Util.least(Util.most(seconds * FOOT_RATE, 0.0), float(last))
 	var low = Util.least(int(floor(at)), Util.most(0, last - 1))
