@@ -104,6 +104,11 @@ def add_arguments(parser: ArgumentParser) -> None:
         action="store_true",
         help="draw nothing behind the character: .png, .mov and .webm have alpha",
     )
+    parser.add_argument(
+        "--depth-of-field",
+        action="store_true",
+        help="blur what is nearer or farther than the face of who is framed",
+    )
 
 
 def load_figure(project: Project, folder: Path, sticks: bool = False) -> Any:
@@ -222,6 +227,8 @@ def _check_options(options: Namespace) -> None:
         raise ValueError(f"{options.out.suffix} has no transparency; write .png, .mov or .webm")
     if options.transparent and options.background is not None:
         raise ValueError("give --transparent or --background, not both")
+    if options.transparent and options.depth_of_field:
+        raise ValueError("give --transparent or --depth-of-field, not both")
     if options.out.suffix != ".bvh" and (options.bvh_order != "ZXY" or options.bvh_metres):
         raise ValueError("--bvh-order and --bvh-metres are for .bvh files")
 
@@ -257,9 +264,9 @@ def run(options: Namespace) -> int:
         declare_inputs(*list_project_files(one.project, one.folder or folder))
     props = load_props(shown, folder)
     if props is not None:
-        from app.stage.prop_contacts import rest_on_props
+        from app.stage.prop_contacts import put_on_props
 
-        shown = rest_on_props(shown, props)
+        shown = put_on_props(shown, props)
     if options.out.suffix in MOTION:
         claim(*_outs(options.out, shown))
         for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):
@@ -276,6 +283,8 @@ def run(options: Namespace) -> int:
         look = make_render_look(project, folder, options.theme, options.light, options.background)
         if options.transparent:
             look = replace(look, transparent=True)
+        if options.depth_of_field:
+            look = replace(look, blurred=True)
         direction = _direction(project, options, shown, folder, seen)
         shot = Shot(
             options.seconds,

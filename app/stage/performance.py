@@ -19,7 +19,7 @@ from app.project.jobs import Jobs
 from app.stage.conversation_plans import ConversationPlans, keep_conversation
 from app.stage.live_control import LiveControl
 from app.stage.playback_source import ShownPlayback, play_clip_alone, play_in_context, play_manual
-from app.stage.prop_contacts import rest_on_props
+from app.stage.prop_contacts import put_on_props
 from app.stage.props import PropFigures
 from app.stage.request_edits import SOON, RequestEdits
 from app.stage.session import StageSession
@@ -302,7 +302,7 @@ class StagePerformance(QObject):
         if self._props is None:
             return shown
         own = self.is_documents(shown.everyone[0])
-        return rest_on_props(shown, self._props.meshes, self.document.project.props if own else None)
+        return put_on_props(shown, self._props.meshes, self.document.project.props if own else None)
 
     def _rest(self) -> None:
         """Follow props that were moved, added or read."""

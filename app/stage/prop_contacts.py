@@ -19,7 +19,7 @@ from metagraph.speech.duet import Stand
 Corners = tuple[tuple[float, float, float], ...]
 
 
-def rest_on_props(
+def put_on_props(
     shown: ShownPlayback, meshes: PropMeshes, props: Mapping[str, Prop] | None = None
 ) -> ShownPlayback:
     """Return what is shown with hands and feet of all speakers on the tops of what stands there; the same if

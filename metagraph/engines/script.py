@@ -9,6 +9,7 @@ from itertools import combinations
 from typing import Any
 
 from metagraph.engines.script_chatter import list_chatter_cases
+from metagraph.engines.script_crowds import list_crowd_cases
 from metagraph.engines.script_faces import list_face_cases
 from metagraph.engines.script_feet import list_feet_cases
 from metagraph.engines.script_life import list_life_cases
@@ -50,6 +51,7 @@ def make_script_cases(project: Project) -> Iterator[ScriptCase]:
         list_speech_cases,
         list_told_cases,
         list_chatter_cases,
+        list_crowd_cases,
         list_weight_cases,
         list_feet_cases,
     ):

@@ -154,6 +154,8 @@ def _capsules(chance: Random, thick: float) -> Numbers:
         rows[5] = [8, *nothing, 8, *nothing, 0.0625, 1, 2]  # a ball
     if chance.random() < 0.2:
         rows[3] = [7, *nothing, 7, *nothing, 0.0625, 1, 1]
+    if chance.random() < 0.4:  # a long bar, whose ball is far larger than a limb's
+        rows.append([0, -1.5, 0.25, 0.125, 0, 1.5, 0.25, 0.125, 0.03125, -1, 0])
     return [float(len(rows)), *(x for row in rows for x in row)]
 
 

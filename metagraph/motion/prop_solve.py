@@ -83,7 +83,7 @@ class HandRest:
     roll: float = 0.0
 
 
-def rest_hands(rig: RestingRig, pose: ContactPose, rests: Sequence[Sequence[HandRest]]) -> bool:
+def put_hands_on_tops(rig: RestingRig, pose: ContactPose, rests: Sequence[Sequence[HandRest]]) -> bool:
     """Move hands onto tops; return whether any moved. rests: for the left and the right hand. You need not
     call `spread` first.
     """

@@ -58,7 +58,8 @@ LANGUAGES = {
         ".js",
         (
             "character.js", "describe.js", "glb.js", "graph.js", "three.js", "index.js", "words.js",
-            "basics.js", "single_rules.js", "avatar", "react.js", "element.js", "stage.js", "sounds.js", "meshopt",
+            "basics.js", "single_rules.js", "avatar", "react.js", "element.js", "stage.js", "sounds.js",
+            "meshopt",
         ),
     ),
     "csharp": Language(
@@ -76,7 +77,8 @@ LANGUAGES = {
         ".gd",
         (
             "metagraph_character", "plugin.gd", "conformance.gd", "character.gd", "check.gd",
-            "describe.gd", "glb.gd", "graph.gd", "shim", "util.gd", "bones.gd", "clip.gd", "single_rules.gd", "letters_table.gd",
+            "describe.gd", "glb.gd", "graph.gd", "shim", "util.gd", "bones.gd", "clip.gd", "single_rules.gd",
+            "letters_table.gd",
         ),
         comments=r"#[^\n]*",
         texts=r'"""(?:.|\n)*?"""|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'',

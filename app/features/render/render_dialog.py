@@ -150,6 +150,9 @@ class RenderDialog(QDialog):
         self._opaque = self.background.currentIndex()  # what is chosen where nothing can be transparent
         self.form.addRow(tr("Light"), self.light)
         self.form.addRow(tr("Background"), self.background)
+        self.blurred = QCheckBox(tr("Blur what is nearer or farther than the face"), self)
+        self.form.addRow(tr("Depth of field"), self.blurred)
+        self.background.currentIndexChanged.connect(self._offer_blur)
         self.captions = QCheckBox(tr("Show the spoken words at the bottom of the picture"), self)
         self.captions.setChecked(self.performance.timeline.now.captions)
         self.form.addRow(tr("Captions"), self.captions)
@@ -186,7 +189,7 @@ class RenderDialog(QDialog):
         self.file.setText(str(Path(self.file.text()).with_suffix(suffix)))
         drawn = suffix in (*VIDEOS, ".png")
         self._offer_transparency(suffix)
-        for row in (self.size_box, self.light, self.background):
+        for row in (self.size_box, self.light, self.background, self.blurred):
             self.form.setRowVisible(row, drawn)
         self.form.setRowVisible(self.seconds, isinstance(self.part.currentData(), float))
         self.form.setRowVisible(self.fps, suffix != ".png")
@@ -211,6 +214,10 @@ class RenderDialog(QDialog):
             self.background.setCurrentIndex(place)
         elif suffix == ".mp4" and held:
             self.background.setCurrentIndex(self._opaque)
+
+    def _offer_blur(self) -> None:
+        """Offer to blur where there is something behind the character."""
+        self.blurred.setEnabled(self.background.currentData() != TRANSPARENT)
 
     def _browse(self) -> None:
         suffix = self.kind.currentData()
@@ -242,6 +249,7 @@ class RenderDialog(QDialog):
             self.session.onstage.improvised,
             self.session.watch.now.seat,
             clear,
+            self.blurred.isChecked() and not clear,
         )
         QSettings().setValue("render/size", self.size_box.currentIndex())
         project, folder = document.project, document.folder or Path()

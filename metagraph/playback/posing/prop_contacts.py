@@ -25,7 +25,7 @@ from metagraph.motion.prop_solve import (
     HandRest,
     RestingRig,
     lift_feet,
-    rest_hands,
+    put_hands_on_tops,
     set_carried,
 )
 from metagraph.motion.prop_tops import PropTop
@@ -47,7 +47,7 @@ HANDS, FEET = 11, 7  # samples over which what a top does to them sets in, half 
 ARM = 0.6  # of the height: from the hips to stretched fingers, and a step
 REACH = 0.22  # metres below a top up to which a hand is brought onto it
 NEAR, FAR = 0.03, 0.07  # metres above a top: a hand comes to rest, and does not
-SLOW, QUICK = 0.12, 0.35  # metres a second: likewise
+SLOW, QUICK = 0.12, 0.35  # metres a second: it does, and does not
 MOST_PITCH, MOST_ROLL = 0.7, 0.5  # radians by which a hand is laid flat
 UPRIGHT = 0.25  # cosine of a roll: a hand that is rolled so far stays rolled
 DEEP = 0.05  # metres below a top from which on a hand is laid flat on it
@@ -122,10 +122,10 @@ def _to_vector(of: Array) -> tuple[float, float, float]:
 
 
 def _list_fingers(skeleton: Skeleton, roles: Mapping[str, int], side: str) -> list[list[int]]:
-    """Return the joints of the outer fingers of a hand, the index finger first."""
+    """Return the joints of the fingers of a hand that reach beyond the others, the index finger first."""
     lines = [
         [roles[name] for n in (1, 2, 3) if (name := f"{side}_{finger}_{n}") in roles]
-        for finger in ("index", "little")
+        for finger in ("index", "middle", "little")
     ]
     return [line for line in lines if line]
 
@@ -208,7 +208,7 @@ class RestingStage:
                     _put(self.legs.body, one, rotations[n], translations[n])
             if busy_hands[n] and self.rig is not None:
                 one = _pick(self.rig.body, rotations[n], translations[n])
-                if rest_hands(self.rig, one, self._list_rests(found, n)):
+                if put_hands_on_tops(self.rig, one, self._list_rests(found, n)):
                     _put(self.rig.body, one, rotations[n], None)
         return Pose(rotations, translations)
 

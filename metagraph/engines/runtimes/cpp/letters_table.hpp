@@ -169,7 +169,6 @@ inline constexpr std::uint32_t MARKS[] = {
     1, 95, 1, 12, 1, 239, 1, 1, 3, 2, 2, 5, 2, 1, 1, 52, 1, 246, 1, 20272, 1, 769, 16,
 };
 
-}  // namespace letters_table
 // Other letters below 65536, each followed by its plain form.
 inline constexpr const char* SPELLED =
     "\u0345\u03b9 \u037e; \u0385\u00a8 \u0387\u00b7 \u0531\u0561 \u0532\u0562 \u0533\u0563 \u0534\u0564 \u0535\u0565 "
@@ -307,5 +306,7 @@ inline constexpr const char* SPELLED =
     "\uff24\uff44 \uff25\uff45 \uff26\uff46 \uff27\uff47 \uff28\uff48 \uff29\uff49 \uff2a\uff4a \uff2b\uff4b \uff2c\uff4c "
     "\uff2d\uff4d \uff2e\uff4e \uff2f\uff4f \uff30\uff50 \uff31\uff51 \uff32\uff52 \uff33\uff53 \uff34\uff54 \uff35\uff55 "
     "\uff36\uff56 \uff37\uff57 \uff38\uff58 \uff39\uff59 \uff3a\uff5a ";
+
+}  // namespace letters_table
 
 }  // namespace metagraph

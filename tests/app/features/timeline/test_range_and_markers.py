@@ -298,3 +298,23 @@ def test_ripple_moves_and_closes_up_in_one_step(stage):
     assert times() == pytest.approx([max(2.0, 4.0 - gone), 9.0 - gone], abs=0.01)
     stage.document.undo()
     assert times() == [2.0, 4.0, 9.0] and not requests.ripple
+
+
+def test_depth_of_field_is_written_only_with_something_behind_the_character(stage, monkeypatch):
+    from app.features.render import render_dialog
+
+    dialog = render_dialog.RenderDialog(stage.performance, stage.session, stage.jobs, stage.window)
+    orders = []
+    monkeypatch.setattr(
+        render_dialog, "write_rendering", lambda project, folder, order, job: orders.append(order)
+    )
+    monkeypatch.setattr(dialog, "_done", lambda path: None)
+    dialog.blurred.setChecked(True)
+    for kind in (".mp4", ".mov"):
+        dialog.kind.setCurrentIndex(dialog.kind.findData(kind))
+        dialog._suffixed()
+        dialog._write()
+        stage.wait(lambda: not stage.jobs.running)
+    assert [order.blurred for order in orders] == [True, False]
+    assert not dialog.blurred.isEnabled()
+    dialog.close()
