@@ -222,7 +222,11 @@ def _loop(
     if spot.over >= 1.0:
         return here
     seam = spot.meets - project.span(rest.action)[0]
-    before, leaves, meets = foot_row(track, spot.other), foot_row(track, spot.leaves), foot_row(track, spot.meets)
+    before, leaves, meets = (
+        foot_row(track, spot.other),
+        foot_row(track, spot.leaves),
+        foot_row(track, spot.meets),
+    )
     return stepped(height, before, here, leaves, meets, spot.over * seam, seam)
 
 
