@@ -21,7 +21,7 @@ A key that two places use belongs to the place that has the focus.
 
 def page(actions: Any) -> str:
     """Return the page. actions: a window's."""
-    from app.features.help import LANES, TIMELINE
+    from app.features.help.help_commands import LANES, TIMELINE
 
     rows: dict[str, list[tuple[str, str]]] = {}
     for command in actions.commands:

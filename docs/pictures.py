@@ -2,9 +2,10 @@
 under `xvfb-run`).
 
 Writes into docs/images: screens/*.webp, timing.png, practice.png, empty.png, light.png, requests.png,
-models.png, label.png, characters.png, export.png, parameters.png, web.png, conversation.png, motion-graph.png
-and performance.png, from our own sample clips only; with names behind it, only those. The screen has to be
-larger than 2560 x 1440. The web page needs Node, Chromium and what tests/package.json names.
+models.png, label.png, characters.png, export.png, parameters.png, web.png, conversation.png,
+motion-graph.png, performance.png, props.png and at-a-desk.png, from our own sample clips only; with names
+behind it, only those. The screen has to be larger than 2560 x 1440. The web page needs Node, Chromium and
+what tests/package.json names.
 """
 
 from __future__ import annotations
@@ -427,6 +428,36 @@ def performance() -> None:
     command(["render", sample, "-s", "46", "--seed", "7", "-o", out, "--overwrite"])
 
 
+def props() -> None:
+    """Who sits at a desk, with the panel that says how well it fits; and two who talk at one, filmed."""
+    from app.cli.parser import main as command
+    from metagraph.formats.store import save_project
+    from sample_clips.make.at_a_desk import make_desk_talk
+
+    with tempfile.TemporaryDirectory() as place:
+        project = Path(place) / "desk.metagraph.yaml"
+        save_project(make_desk_talk(), project)
+        out = str(ROOT / "docs" / "images" / "at-a-desk.png")
+        command(
+            ["render", str(project), "--conversation", "talk", "--start", "16.6", "-s", "1", "--frames", "1",
+             "--size", "1280x720", "--theme", "light", "--depth-of-field", "--no-captions", "--cuts",
+             "-o", out, "--overwrite"]
+        )  # fmt: skip
+        out = window()
+        out.files.open(project)
+        wait(8000, lambda: out.performance.shown.skeleton is not None)
+        out.window.resize(1680, 1020)
+        out.show("props")
+        wait(4000)
+        panel = out.panel("props")
+        (desk,) = (i for i, prop in out.document.project.props.items() if prop.name == "desk")
+        panel.choose(desk)
+        wait(2500)
+        out.window.statusBar().clearMessage()
+        shoot(out.window, "props.png")
+        close(out)
+
+
 def nothing() -> None:
     """The window before anything is in it."""
     out = window()
@@ -450,6 +481,7 @@ PICTURES: dict[str, Callable[[], None]] = {
     "motion-graph": motion_graph,
     "web": page,
     "performance": performance,
+    "props": props,
 }
 
 

@@ -4,6 +4,8 @@ the arms gesture, down to the chest if only the head moves; from the front.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any, Literal
 
 import numpy as np
@@ -14,8 +16,9 @@ from metagraph.motion.moving import find_moved_parts
 from metagraph.motion.roles import find_roles, is_humanoid
 from metagraph.motion.skeleton import Skeleton
 from preview import joints as rules
+from preview.camera import Camera
 from preview.figure import MeshFigure
-from preview.scene import THEMES, LampTurn, SceneTheme
+from preview.scene import THEMES, Actor, LampTurn, SceneTheme
 
 Array = NDArray[Any]
 Near = Literal["whole", "upper", "head"]
@@ -26,6 +29,7 @@ Box = tuple[Array, Array]  # its lowest and its highest corner, metres
 ASIDE: dict[Near, float] = {"upper": 0.3, "head": 0.15}
 BELOW: dict[Near, float] = {"upper": 0.03, "head": 0.02}
 HAND = 0.07  # beyond a wrist
+CENTRAL = 0.15  # of the field of view: about so far from the middle of a picture a face has the focus
 AVERTED = 1.0  # radians from the front beyond which a face is hardly seen
 
 
@@ -94,6 +98,29 @@ def find_lamp_turn(yaw: float, heading: float = 0.0) -> LampTurn | None:
 def has_studio_lamp(theme: SceneTheme) -> bool:
     """Return whether a theme's lamp stands where the studio's does: it follows the camera; others stay."""
     return theme.toward == THEMES[theme.name].toward
+
+
+def find_focus(camera: Camera, actors: Sequence[Actor]) -> float | None:
+    """Return how far before a camera the face is on which it is focused, metres: of several that of whom the
+    picture's middle is nearest to, and between two in the middle of both. None if no face is before it.
+    """
+    far, weights = [], []
+    for actor in actors:
+        place = np.asarray(actor.positions, float).reshape(-1, len(actor.figure.skeleton), 3)[0]
+        face = place[_find_face(actor.figure.skeleton)].mean(0)
+        x, y, z = camera.axes @ (face - camera.eye)
+        if z < -camera.near:
+            far.append(-z)
+            weights.append(np.exp(-((np.hypot(x, y) / -z / (CENTRAL * camera.fov)) ** 2)) + 1e-9)
+    return float(np.average(far, weights=weights)) if far else None
+
+
+@lru_cache(maxsize=32)
+def _find_face(skeleton: Skeleton) -> list[int]:
+    """Return the joints between which a skeleton's face is: its eyes, its head, or else all."""
+    roles = find_roles(skeleton)
+    eyes = [roles[name] for name in ("left_eye", "right_eye") if name in roles]
+    return eyes or ([roles["head"]] if "head" in roles else list(range(len(skeleton))))
 
 
 def turn_to_face(figure: MeshFigure, positions: Array) -> float:

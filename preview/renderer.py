@@ -14,6 +14,7 @@ from preview import shaders
 from preview.backdrop import ViewBackdrop
 from preview.camera import Camera
 from preview.drawing import SceneDrawing, set_uniforms
+from preview.focus import DepthOfField
 from preview.frame import (
     MARGIN,
     Array,
@@ -66,6 +67,7 @@ class Renderer:
         self.store = self._drawing.store
         self.occlusion = not self.software  # takes a tenth of a picture's time if the processor draws
         self._backdrop = ViewBackdrop(self._drawing)
+        self._focus = DepthOfField(self._drawing)
         self._size = (0, 0)
         self._targets: list[Any] = []
         self._resize(1, 1)
@@ -76,6 +78,7 @@ class Renderer:
             held.release()
         self._targets.clear()
         self._backdrop.release()
+        self._focus.release()
         if self._beside is None:
             self._shadows.release()
             self._drawing.release()
@@ -127,10 +130,14 @@ class Renderer:
         parts = find_covered(frame)
         if len(parts):
             self._drawing.state(self._main, (0, 0, width, height), moderngl.DEPTH_TEST)
-            self._clear(parts)
+            self._clear(parts, scene.focus is not None)
             self._bodies(frame, frame.which(solid=True))
             self._ghosts(frame)
             self._compose(frame, target, parts)
+        elif scene.focus is not None:
+            self._main.clear(depth=1.0)
+        if not theme.transparent:
+            self._focus.draw(frame, target, self._main)
         self._overlay(frame)
 
     # --- passes
@@ -193,12 +200,12 @@ class Renderer:
         self._bodies(frame, which)
         self.ctx.polygon_offset = 0.0, 0.0
 
-    def _clear(self, parts: Array) -> None:
+    def _clear(self, parts: Array, whole: bool) -> None:
         """Clear the picture for figures: all of it or only round their parts, whichever is faster."""
         low, past = parts[:, :2].min(0) - MARGIN, parts[:, 2:].max(0) + MARGIN  # smoothing reads beyond
         low, past = np.maximum(low, 0), np.minimum(past, self._size)
         part = (*low.tolist(), *(past - low).tolist())
-        if part[2] * part[3] > WHOLE * self._size[0] * self._size[1]:
+        if whole or part[2] * part[3] > WHOLE * self._size[0] * self._size[1]:
             self._main.clear(depth=1.0)
         else:
             self._main.clear(depth=1.0, viewport=part)

@@ -57,7 +57,7 @@ class Scene:
     `lamp` is what the theme's lamp is turned by, if the light follows the camera. `background` is one flat
     sRGB colour with alpha, premultiplied, instead of the theme's background; there is no ground then.
     `picture` is uint8 `[H, W, 3]`, sRGB, first row at the top, which is shown whole behind the actors, also
-    without ground.
+    without ground. `focus` is how far before the camera it is sharp, metres; None for everywhere.
     """
 
     actors: tuple[Actor, ...] = ()
@@ -66,12 +66,13 @@ class Scene:
     background: tuple[float, float, float, float] | None = None
     picture: Array | None = None
     lamp: LampTurn | None = None
+    focus: float | None = None
 
     def same(self, other: Scene) -> bool:
         """Return whether both scenes give exactly the same picture."""
         return (
-            (self.ground, self.shadow, self.background, self.lamp)
-            == (other.ground, other.shadow, other.background, other.lamp)
+            (self.ground, self.shadow, self.background, self.lamp, self.focus)
+            == (other.ground, other.shadow, other.background, other.lamp, other.focus)
             and self.picture is other.picture
             and len(self.actors) == len(other.actors)
             and all(_same(a, b) for a, b in zip(self.actors, other.actors, strict=True))
@@ -150,6 +151,7 @@ class SceneTheme:
     walls: Walls | None = None  # instead of ground and sky
     picture: BackPicture | None = None  # instead of ground and sky; shadows fall on it
     transparent: bool = False  # nothing is behind the figures, not even a ground
+    blurred: bool = False  # what is nearer or farther than the face of who is framed, in pictures and videos
 
     def turned(self, by: LampTurn) -> SceneTheme:
         """Return the theme with its lamp turned."""

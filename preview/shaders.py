@@ -541,3 +541,66 @@ void main() {
     o_color = most - least < 0.03 ? here : mean;
 }
 """
+
+# How much a place of the picture is blurred: 0 in focus, 1 for what is blurred most.
+_FOCUS = """#version 330 core
+uniform sampler2D u_color, u_depth;
+uniform vec3 u_eye, u_right, u_ahead, u_above_eye, u_low, u_high;
+uniform vec2 u_ends, u_focus;  // near and far of the depths; what is in focus, and what is sharp round it
+in vec2 v_at;
+out vec4 o_color;
+float blurred(float depth) {
+    float far;
+    if (depth < 1.0) {
+        far = u_ends.x * u_ends.y / (u_ends.y - depth * (u_ends.y - u_ends.x));
+    } else {
+        vec3 way = u_ahead + (v_at.x * 2.0 - 1.0) * u_right + (v_at.y * 2.0 - 1.0) * u_above_eye;
+        vec3 safe = way + vec3(equal(way, vec3(0.0))) * 1e-6;
+        vec3 last = max((u_low - u_eye) / safe, (u_high - u_eye) / safe);
+        far = max(min(min(last.x, last.y), last.z), 1e-3);
+    }
+    return clamp(max(abs(far - u_focus.x) - u_focus.y, 0.0) / far, 0.0, 1.0);
+}
+"""
+# What is in focus counts less, so that it does not spread over what is behind it.
+FOCUS_PART = (
+    _FOCUS
+    + """
+void main() {
+    ivec2 most = textureSize(u_depth, 0) - 1;
+    o_color = vec4(0.0);
+    for (int i = 0; i < 4; ++i) {
+        ivec2 at = min(ivec2(gl_FragCoord.xy) * 2 + ivec2(i & 1, i >> 1), most);
+        float k = max(blurred(texelFetch(u_depth, at, 0).r), 0.002);
+        o_color += vec4(texelFetch(u_color, at, 0).rgb * k, k) * 0.25;
+    }
+}
+"""
+)
+FOCUS_BLUR = """#version 330 core
+uniform sampler2D u_color;
+uniform vec2 u_way;
+in vec2 v_at;
+out vec4 o_color;
+void main() {
+    vec4 sum = vec4(0.0);
+    for (int i = -6; i <= 6; ++i) {
+        float x = float(i) / 6.0;
+        sum += exp(-2.5 * x * x) * texture(u_color, v_at + x * u_way);
+    }
+    o_color = sum / 6.2;
+}
+"""
+FOCUS = (
+    _FOCUS
+    + """
+uniform sampler2D u_blurred;
+uniform float u_pixels;
+void main() {
+    vec4 sharp = texture(u_color, v_at), soft = texture(u_blurred, v_at);
+    float k = blurred(texture(u_depth, v_at).r);
+    float share = smoothstep(0.0, 1.0, min(1.0, k * u_pixels / 3.0));
+    o_color = vec4(mix(sharp.rgb, soft.rgb / max(soft.a, 1e-5), share), sharp.a);
+}
+"""
+)

@@ -12,7 +12,7 @@ from app.cli.outputs import ProjectOutput, with_project_ending
 from metagraph.formats.outputs import claim, note_written
 
 if TYPE_CHECKING:
-    from metagraph.graph.model import Layer, Project
+    pass
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -60,7 +60,7 @@ def _found(options: Namespace, output: ProjectOutput | None) -> int:
 
     from metagraph.formats.gltf.reader import read_character
     from metagraph.graph import edits
-    from metagraph.suggest.find_contacts import with_contacts, with_measured_body
+    from metagraph.suggest.find_contacts import list_contact_actions, with_contacts, with_measured_body
 
     project = open_for_command(options.project)
     chosen = [a for a in project.actions() if not options.action or {a.id, a.name} & set(options.action)]
@@ -74,7 +74,8 @@ def _found(options: Namespace, output: ProjectOutput | None) -> int:
         project = with_measured_body(
             project, read_character(mesh) if mesh is not None and mesh.exists() else None
         )
-        project = with_contacts(project, [a.id for a in chosen if _moves_arms(project, a.layer)])
+        moving = set(list_contact_actions(project))
+        project = with_contacts(project, [ident for ident in idents if ident in moving])
     changes = {n: getattr(options, n) == "on" for n in ("contacts", "guard") if getattr(options, n)}
     project = replace(project, touch=msgspec.structs.replace(project.touch, **changes))
     found = [(a, s) for i in idents if (a := project.action(i)) is not None for s in a.contacts]
@@ -89,7 +90,3 @@ def _found(options: Namespace, output: ProjectOutput | None) -> int:
     count = len({a.id for a, _ in found})
     say(options, "\n".join([*lines, f"{len(found)} contacts in {count} actions"]), {"contacts": rows})
     return 0
-
-
-def _moves_arms(project: Project, layer: Layer) -> bool:
-    return project.graphs[layer].weight("arms") > 0

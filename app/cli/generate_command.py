@@ -24,6 +24,15 @@ def add_arguments(parser: ArgumentParser) -> None:
     generate_motion.add_model_argument(new)
     generate_motion.add_heard_arguments(new, needed=True)
     new.add_argument("-o", "--out", type=Path, required=True, help="the .bvh or .glb file to write")
+    new.add_argument(
+        "--project",
+        type=Path,
+        help="the project whose character it is: hips, legs, fingers, gaze and face move as in its window "
+        "(default: the sample project)",
+    )
+    new.add_argument(
+        "--bare", action="store_true", help="write what the model moves alone: nothing else is added"
+    )
     judged = action("evaluate", "evaluate models on takes they have not seen", generate_judging.judge_models)
     generate_judging.add_arguments(judged)
     ablated = action(

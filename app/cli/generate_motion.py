@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from argparse import ArgumentParser, Namespace
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING, Any
 from app.cli.outputs import ProjectOutput
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from app.cli.generate_life import LivingClip
     from metagraph.generation.stored import Model, ModelCard
-    from metagraph.generation.take_files import TakeSpeech
+    from metagraph.generation.take_files import TakeFiles, TakeSpeech
+    from metagraph.graph.conversation.model import Conversation
     from metagraph.motion.clip import Clip
 
 OUT = (".bvh", ".glb")
@@ -97,23 +99,36 @@ def cut_arguments(parser: ArgumentParser) -> None:
 
 @dataclass(frozen=True, eq=False)
 class HeardInput:
-    """What a model is given. samples: `[C, N]`, own voice first; activity: `[T, 4]`."""
+    """What a model is given. samples: `[C, N]`, own voice first; activity: marks and who speaks `[T, TOLD]`,
+    or who speaks alone `[T, 4]`. sounds: the files that were heard, the conversation's sides in order; side:
+    who moves; talk: who says what when, where words tell it.
+    """
 
     samples: Any
     activity: Any
     name: str
+    sounds: tuple[Path, ...] = ()
+    side: int = 0
+    talk: Conversation | None = None
 
 
 def read_heard(options: Namespace, tracks: int) -> HeardInput:
     """Return what is heard. Raises FileError, ValueError."""
     import numpy as np
 
+    from app.cli.language_options import read_speaking
     from metagraph.generation.features import count_sound_frames
+    from metagraph.generation.take_files import read_speech
 
     paths: list[Path] = options.speech or []
     if len(paths) > 2 or len(options.words or ()) > 2:
         raise ValueError("give one or two sounds and at most two transcripts for a conversation of two")
-    speech, name = _read_speech(options, paths) if paths else _planted_speech(options)
+    files: TakeFiles | None = None
+    if paths:
+        files = _find_speech(options, paths)
+        speech, name = read_speech(files, read_speaking(options)), paths[0].stem
+    else:
+        speech, name = _planted_speech(options)
     for note in speech.notes:
         print(f"note: {note}", file=sys.stderr)
     samples = np.atleast_2d(speech.samples)
@@ -123,7 +138,8 @@ def read_heard(options: Namespace, tracks: int) -> HeardInput:
         activity = as_role(activity, options.activity)
     if tracks == 2 and len(samples) == 1:
         samples = np.concatenate([samples, np.zeros_like(samples)])
-    return HeardInput(samples, activity, name)
+    sounds, side = ((), 0) if files is None else (files.sounds, files.side)
+    return HeardInput(samples, activity, name, sounds, side, speech.conversation)
 
 
 def _planted_speech(options: Namespace) -> tuple[TakeSpeech, str]:
@@ -137,12 +153,11 @@ def _planted_speech(options: Namespace) -> tuple[TakeSpeech, str]:
     return TakeSpeech(samples, (0.0, 0.0), spoken.conversation), name
 
 
-def _read_speech(options: Namespace, paths: list[Path]) -> tuple[TakeSpeech, str]:
-    """Return the speech of files, with its name. Raises FileError."""
-    from app.cli.language_options import read_speaking
+def _find_speech(options: Namespace, paths: list[Path]) -> TakeFiles:
+    """Return the files of speech, checked. Raises FileError."""
     from metagraph.errors import FileError
     from metagraph.formats.conversations.files import SOUNDS
-    from metagraph.generation.take_files import TakeFiles, read_speech
+    from metagraph.generation.take_files import TakeFiles
 
     for path in paths:
         if not path.is_file():
@@ -153,8 +168,7 @@ def _read_speech(options: Namespace, paths: list[Path]) -> tuple[TakeSpeech, str
     swapped = options.side == 2 and len(paths) == 2 and not words
     sounds = tuple(reversed(paths)) if swapped else tuple(paths)
     side = options.side - 1 if len(sounds) == 1 or words else 0
-    files = TakeFiles(paths[0], sounds, tuple(words), side)
-    return read_speech(files, read_speaking(options)), paths[0].stem
+    return TakeFiles(paths[0], sounds, tuple(words), side)
 
 
 def _words_beside(sound: Path) -> list[Path]:
@@ -187,8 +201,8 @@ def _check(speech: TakeSpeech, samples: Any, place: str) -> None:
 
 
 def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int) -> Any:
-    """Return who speaks when: `[T, 4]`, of the words if there are any, else of the sound."""
-    from metagraph.generation.features import compute_conversation_activity
+    """Return marks and who speaks when `[T, TOLD]`, of the words if there are any, else of the sound."""
+    from metagraph.generation.features import tell_conversation
     from metagraph.generation.sampler import hear_activity
 
     if speech.conversation is None:
@@ -197,15 +211,19 @@ def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int)
         return hear_activity(samples)
     if not speech.conversation.sides[options.side - 1].segments:
         print(f"note: side {options.side} does not speak, so it listens", file=sys.stderr)
-    return compute_conversation_activity(speech.conversation, options.side - 1, frames)
+    return tell_conversation(speech.conversation, options.side - 1, frames)
 
 
 def as_role(activity: Any, role: str) -> Any:
-    """Return activity that gives the speaker this role throughout."""
+    """Return activity `[T, 4]` that gives the speaker this role throughout; the marks, which are those of
+    another role, are left out.
+    """
     import numpy as np
 
     from metagraph.generation.features import BOTH, NONE, PARTNER, SELF
+    from metagraph.generation.networks import ACTIVITY
 
+    activity = np.asarray(activity)[:, -ACTIVITY:]
     out = np.zeros_like(activity)
     quiet = activity[:, NONE] > 0.5
     chosen = {"speaking": SELF, "listening": PARTNER, "both": BOTH, "none": NONE}[role]
@@ -257,12 +275,16 @@ def write_motion(options: Namespace) -> int:
     model = read_model(options.model)
     heard = read_heard(options, model.card.tracks)
     clip = make_motion(options, model, heard, options.seed)
+    body = None
+    if not options.bare:
+        living = _with_life(options, heard, clip)
+        clip, body = living.clip, living.body
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix.lower() == ".bvh":
         write_bvh(clip, out)
     else:
-        write_glb(out, [clip])
-    shares = {r: round(float(heard.activity[:, n].mean()), 3) for n, r in enumerate(ROLES)}
+        write_glb(out, [clip], body)
+    shares = {r: round(float(heard.activity[:, n - len(ROLES)].mean()), 3) for n, r in enumerate(ROLES)}
     data = {
         "out": str(out),
         "frames": clip.frames,
@@ -275,6 +297,28 @@ def write_motion(options: Namespace) -> int:
     words = ", ".join(f"{r} {100 * s:.0f} %" for r, s in shares.items())
     say(options, f"{out}: {clip.duration:.1f} s by {options.model.name}, seed {options.seed} ({words})", data)
     return 0
+
+
+def _with_life(options: Namespace, heard: HeardInput, clip: Clip) -> LivingClip:
+    """Return a clip with hips, legs, fingers, gaze and face as the project has them."""
+    from app.cli.demo_command import SAMPLE
+    from app.cli.generate_life import compose_with_life
+    from metagraph.errors import FileError
+    from metagraph.formats.conversations.files import read_conversation
+    from metagraph.graph.conversation.model import Conversation, Side
+
+    talk, side = heard.talk, heard.side
+    if options.activity is not None:  # who plays another's role says nothing that is known
+        talk = None
+    elif talk is None:
+        with suppress(FileError, ValueError):  # a sound in which nobody is heard
+            talk = read_conversation(heard.sounds).conversation
+    if talk is None:
+        talk, side = Conversation(name=heard.name, length=clip.duration, sides=(Side(), Side())), 0
+    living = compose_with_life(options.project or SAMPLE, clip, talk, side)
+    for note in living.notes:
+        print(f"note: {note}", file=sys.stderr)
+    return living
 
 
 def write_pieces(options: Namespace) -> int:

@@ -297,7 +297,7 @@ def run_ablation(options: Namespace) -> int:
     from app.cli.generate_takes import read_all
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.outputs import claim
-    from metagraph.generation.features import MELS
+    from metagraph.generation.features import count_audio
     from metagraph.generation.networks import make_sizes
     from metagraph.generation.take_files import find_takes
     from metagraph.generation.takes import split_takes
@@ -314,7 +314,7 @@ def run_ablation(options: Namespace) -> int:
     rig = batch.rig
     learned, held = split_takes(batch.takes)
     files, _ = find_takes(options.takes, [p for p in options.speech if p.is_dir()])
-    sizes = make_sizes(options.model, options.size, rig.numbers, tracks * MELS)
+    sizes = make_sizes(options.model, options.size, rig.numbers, count_audio(options.model, tracks))
     done = ablation.ablate_model(
         options.out,
         lambda job: _train_one(options, rig, tracks, job),

@@ -25,11 +25,13 @@ from metagraph.playback.bake import bake
 if TYPE_CHECKING:
     from app.stage.props import PropMeshes
     from metagraph.graph.timeline import Cut
+    from metagraph.motion.character_mesh import CharacterMesh
     from metagraph.speech.captions import Caption
     from preview.scene import SceneTheme
 
 VIDEOS = (".mp4", ".mov", ".webm")
 MOTION = (".glb", ".usda", ".bvh", ".npz")  # what `bake_to` writes
+NAMED = 12  # clips that an error lists at most
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -101,6 +103,11 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--transparent",
         action="store_true",
         help="draw nothing behind the character: .png, .mov and .webm have alpha",
+    )
+    parser.add_argument(
+        "--depth-of-field",
+        action="store_true",
+        help="blur what is nearer or farther than the face of who is framed",
     )
 
 
@@ -220,6 +227,8 @@ def _check_options(options: Namespace) -> None:
         raise ValueError(f"{options.out.suffix} has no transparency; write .png, .mov or .webm")
     if options.transparent and options.background is not None:
         raise ValueError("give --transparent or --background, not both")
+    if options.transparent and options.depth_of_field:
+        raise ValueError("give --transparent or --depth-of-field, not both")
     if options.out.suffix != ".bvh" and (options.bvh_order != "ZXY" or options.bvh_metres):
         raise ValueError("--bvh-order and --bvh-metres are for .bvh files")
 
@@ -239,7 +248,9 @@ def run(options: Namespace) -> int:
             )
         clip = next(iter(found), None)
         if clip is None or project.clips[clip].motion is None:
-            raise ValueError(f"there is no clip '{options.clip}' in the project")
+            raise ValueError(
+                f"there is no clip '{options.clip}' in the project; {_list_clips(project, options.clip)}"
+            )
         options.start, options.seconds = 0.0, project.clips[clip].duration
     if options.conversation is not None:
         shown = _talking(project, options, folder)
@@ -251,6 +262,11 @@ def run(options: Namespace) -> int:
         )
     for one in shown.everyone:
         declare_inputs(*list_project_files(one.project, one.folder or folder))
+    props = load_props(shown, folder)
+    if props is not None:
+        from app.stage.prop_contacts import put_on_props
+
+        shown = put_on_props(shown, props)
     if options.out.suffix in MOTION:
         claim(*_outs(options.out, shown))
         for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):
@@ -267,8 +283,9 @@ def run(options: Namespace) -> int:
         look = make_render_look(project, folder, options.theme, options.light, options.background)
         if options.transparent:
             look = replace(look, transparent=True)
+        if options.depth_of_field:
+            look = replace(look, blurred=True)
         direction = _direction(project, options, shown, folder, seen)
-        props = load_props(shown, folder)
         shot = Shot(
             options.seconds,
             size,
@@ -304,6 +321,17 @@ class Shot:
     direction: Direction = ((), ())
     seat: str = "stool"
     props: PropMeshes | None = None
+
+
+def _list_clips(project: Project, wanted: str) -> str:
+    """Return the names of a project's clips, in words: first those that have some of what was wanted in
+    them.
+    """
+    names = sorted(
+        {c.name for c in project.clips.values()}, key=lambda name: wanted.casefold() not in name.casefold()
+    )
+    more = f", and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    return f"its clips are {', '.join(repr(n) for n in names[:NAMED])}{more}"
 
 
 def _direction(
@@ -466,17 +494,23 @@ def bake_to(
     elif out.suffix == ".npz":
         write_smpl(motion, out)
     else:
-        body = None
-        if project.character is not None:
-            from metagraph.formats.gltf.reader import read_character
-
-            body = read_character(folder / project.character).without(project.hidden)
-            if body.skeleton != project.skeleton or not len(body.triangles):
-                body = None  # it would not move with this motion
+        body = read_body(project, folder)
         if out.suffix == ".usda":
             write_usd(out, motion.skeleton, [motion], body)
         else:
             write_glb(out, [motion], body)
+
+
+def read_body(project: Project, folder: Path) -> CharacterMesh | None:
+    """Return the character that a project's motion moves; None if it has none, or one of another
+    skeleton.
+    """
+    if project.character is None:
+        return None
+    from metagraph.formats.gltf.reader import read_character
+
+    body = read_character(folder / project.character).without(project.hidden)
+    return body if body.skeleton == project.skeleton and len(body.triangles) else None
 
 
 def _doing(shown: ShownPlayback, seconds: float) -> str:

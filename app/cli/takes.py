@@ -15,6 +15,7 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
 _SAVED = "Save the conversation's segments from the window, as ELAN or TextGrid."
 LONGEST = 7200.0  # seconds of a sound
 KEPT = 16000  # samples a second that are kept of one
+SPEECH = (".eaf", ".textgrid", ".json")  # what was said during a take
 
 
 def add_speech_arguments(parser: ArgumentParser, required: bool) -> None:
@@ -26,7 +27,8 @@ def add_speech_arguments(parser: ArgumentParser, required: bool) -> None:
         required=required,
         default=[],
         metavar="FILE",
-        help="what was said in each take: .eaf, .TextGrid or a conversation's .json, with the take's name",
+        help="what was said in each take: .eaf, .TextGrid or a conversation's .json, with the take's name; "
+        "or a folder of them",
     )
     parser.add_argument(
         "--side",
@@ -160,8 +162,9 @@ def _words_of(path: Path, name: str, number: int) -> tuple[Word, ...]:
 def match_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]:
     """Return takes, the speech of each, and their names. Raises ValueError if files do not go together."""
     takes = read_take_files(options.takes)
-    files = {path.stem: path for path in options.speech}
-    if len(files) < len(options.speech):
+    given = _find_speech(options.speech, {name for name, _ in takes})
+    files = {path.stem: path for path in given}
+    if len(files) < len(given):
         raise ValueError("two speech files have the same name: rename one")
     missing = [n for n, _ in takes if n not in files]
     left = [p.name for n, p in files.items() if n not in {name for name, _ in takes}]
@@ -183,6 +186,18 @@ def match_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[
         [read_side_speech(files[n], options.side, sounds.get(n), transcripts.get(n)) for n, _ in takes],
         [n for n, _ in takes],
     )
+
+
+def _find_speech(paths: Sequence[Path], takes: set[str]) -> list[Path]:
+    """Return files of speech: those given, and of folders those that have a take's name."""
+    out = []
+    for path in paths:
+        if path.is_dir():
+            inside = (p for p in sorted(path.iterdir()) if p.suffix.lower() in SPEECH and p.is_file())
+            out += [p for p in inside if p.stem in takes]
+        else:
+            out.append(path)
+    return out
 
 
 def read_given_files(options: Namespace, what: str) -> dict[str, Path]:

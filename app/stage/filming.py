@@ -56,14 +56,17 @@ def render_pictures(
     of the projects' props, None to draw none.
     """
     from app.stage.cutting import Filmed
+    from app.stage.prop_contacts import put_on_props
     from app.stage.stools import make_stools
     from preview.camera import make_whole_figure_camera
     from preview.drawing_apart import draw_scenes
-    from preview.framing import find_lamp_turn, has_studio_lamp, turn_to_face
+    from preview.framing import find_focus, find_lamp_turn, has_studio_lamp, turn_to_face
     from preview.scene import THEMES, LampTurn, Scene
 
     theme = THEMES[look] if isinstance(look, str) else look
 
+    if props is not None:
+        seen = [(figure, put_on_props(shown, props)) for figure, shown in seen]
     seats = tuple(one for of, shown in seen for one in make_stools(shown, seat, of, props))
     figure, first = seen[0]
     pose = first.pose(float(times[0])) if len(seen) == 1 and not callable(camera) else None
@@ -87,7 +90,9 @@ def render_pictures(
             acted = zip(*(_actors(figure, shown, some, props) for figure, shown in seen), strict=True)
             for at, actors in zip(some, acted, strict=True):
                 now = camera(float(at))
-                yield Scene((*(a for some in actors for a in some), *seats), lamp=now.lamp), now.camera
+                focus = find_focus(now.camera, [some[0] for some in actors]) if theme.blurred else None
+                everything = (*(a for some in actors for a in some), *seats)
+                yield Scene(everything, lamp=now.lamp, focus=focus), now.camera
 
     return draw_scenes(scenes(), len(times), size, theme, into)
 

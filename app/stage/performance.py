@@ -19,6 +19,8 @@ from app.project.jobs import Jobs
 from app.stage.conversation_plans import ConversationPlans, keep_conversation
 from app.stage.live_control import LiveControl
 from app.stage.playback_source import ShownPlayback, play_clip_alone, play_in_context, play_manual
+from app.stage.prop_contacts import put_on_props
+from app.stage.props import PropFigures
 from app.stage.request_edits import SOON, RequestEdits
 from app.stage.session import StageSession
 from app.stage.timeline_edits import TimelineEdits
@@ -50,10 +52,15 @@ class StagePerformance(QObject):
     changed = Signal()
 
     def __init__(
-        self, document: Document, session: StageSession, jobs: Jobs, parent: QObject | None = None
+        self,
+        document: Document,
+        session: StageSession,
+        jobs: Jobs,
+        parent: QObject | None = None,
+        props: PropFigures | None = None,
     ) -> None:
         super().__init__(parent)
-        self.document, self.session, self.jobs = document, session, jobs
+        self.document, self.session, self.jobs, self._props = document, session, jobs, props
         self.length = LENGTH
         self.shown = ShownPlayback(document.project, Plan(1, 0.0), LENGTH)
         self.staged: ShownPlayback | None = None
@@ -82,6 +89,8 @@ class StagePerformance(QObject):
         self.timeline = TimelineEdits(document, session, lambda: self.shown.length, self)
         self.before: Project | None = None
         self._answered: ShownPlayback | None = None
+        if props is not None:
+            props.changed.connect(self._rest)
         self._answers: dict[str, AskAnswer] = {}
 
     # --- what plays
@@ -97,7 +106,7 @@ class StagePerformance(QObject):
         muted = frozenset(layers)
         if muted != self.muted:
             self.muted = muted
-            self.shown = replace(self.shown, muted=muted)
+            self.shown = self._rested(replace(self.shown, muted=muted))
             self.changed.emit()
 
     def compare(self, before: Project | None) -> None:
@@ -278,7 +287,7 @@ class StagePerformance(QObject):
         self._busy = False
         if self.live.stage is not None and self.session.transport.show == "plan":
             return
-        self.shown = replace(shown, muted=self.muted) if self.muted else shown
+        self.shown = self._rested(replace(shown, muted=self.muted) if self.muted else shown)
         if self.session.transport.show == "plan":
             self.staged = shown
         if shown.notes and shown.notes != self._noted:
@@ -287,6 +296,20 @@ class StagePerformance(QObject):
         self.changed.emit()
         if self._again:
             self.replan()
+
+    def _rested(self, shown: ShownPlayback) -> ShownPlayback:
+        """Return what is shown with hands and feet on the props that stand there now."""
+        if self._props is None:
+            return shown
+        own = self.is_documents(shown.everyone[0])
+        return put_on_props(shown, self._props.meshes, self.document.project.props if own else None)
+
+    def _rest(self) -> None:
+        """Follow props that were moved, added or read."""
+        rested = self._rested(self.shown)
+        if rested is not self.shown:
+            self.shown = rested
+            self.changed.emit()
 
     def _failed(self, error: Exception) -> None:
         self._busy = False
@@ -304,8 +327,8 @@ class StagePerformance(QObject):
         )
         over = live.session.overlay if self.live.following else None
         if plan is not self.shown.plan or (over is None) != (self.shown.over is None):
-            self.shown = self.staged = ShownPlayback(
-                live.session.project, plan, plan.end, over=over, muted=self.muted
+            self.shown = self.staged = self._rested(
+                ShownPlayback(live.session.project, plan, plan.end, over=over, muted=self.muted)
             )
             self.changed.emit()
 

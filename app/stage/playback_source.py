@@ -4,9 +4,9 @@ time.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -38,6 +38,7 @@ from metagraph.playback.posing.clip_evaluators import (
 )
 
 if TYPE_CHECKING:
+    from metagraph.motion.prop_tops import PropTop
     from metagraph.playback.posing.overlay import Overlay
     from metagraph.speech.delivered import Delivered
     from metagraph.speech.duet import Stand
@@ -63,6 +64,9 @@ class ShownPlayback:
     well its rates are met, if a plan moves it. `looks` says where it looks, if there are three or more
     speakers. `over` returns the generated motion over the plan at a time, when live. `muted` has layers that
     rest in their stances while the user looks at the others.
+
+    `tops` are of the props that stand there, in this one's space: hands rest on them, and feet. `carried` has
+    the corners of the boxes round what its joints carry.
     """
 
     project: Project
@@ -82,6 +86,8 @@ class ShownPlayback:
     over: Callable[[float], Overlay | None] | None = None
     muted: frozenset[Layer] = frozenset()
     beside: ShownPlayback | None = None
+    tops: tuple[PropTop, ...] = ()
+    carried: Mapping[str, tuple[tuple[float, float, float], ...]] = field(default_factory=dict)
 
     @cached_property
     def moving(self) -> Plan:
@@ -129,7 +135,25 @@ class ShownPlayback:
 
     @cached_property
     def evaluator(self) -> Poses | None:
-        """Return the evaluator of what plays; None if there is nothing to show."""
+        """Return the evaluator of what plays, with hands and feet on props; None if there is nothing to
+        show.
+        """
+        found = self.without_props
+        if found is None or not self.tops or self.clip is not None:
+            return found
+        from metagraph.playback.posing.prop_contacts import RestingEvaluator
+
+        return RestingEvaluator(found, self.project, self.tops, self.carried)
+
+    def keep_evaluator(self, other: ShownPlayback) -> ShownPlayback:
+        """Return another playback of the same plan, which need not be prepared again."""
+        if "without_props" in self.__dict__:
+            other.__dict__["without_props"] = self.without_props
+        return other
+
+    @cached_property
+    def without_props(self) -> Poses | None:
+        """Return the evaluator of what plays, as if no props stood there; None for nothing to show."""
         project = self.project
         entry = project.clips.get(self.clip or self.motion or "")
         motion = entry.motion if entry is not None else None

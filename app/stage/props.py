@@ -26,9 +26,11 @@ from metagraph.motion.mesh_rays import find_hits
 from preview.figure import SkinnedFigure
 
 if TYPE_CHECKING:
+    from metagraph.motion.prop_tops import PropTop
     from preview.scene import Actor
 
 LYING = 0.02  # metres between a prop and what it lies on
+TOPS = 64  # places of props whose tops are kept
 SKY = 2000.0  # metres: higher than any prop
 
 
@@ -43,6 +45,7 @@ class PropMeshes:
     meshes: dict[Path, CharacterMesh] = field(default_factory=dict)
     _figures: dict[tuple[Path, float], SkinnedFigure] = field(default_factory=dict)
     carrying: tuple[Hashable, tuple[str, float]] | None = None  # what was last found to carry who sits
+    tops: dict[tuple[Hashable, ...], tuple[PropTop, ...]] = field(default_factory=dict)  # by mesh and place
 
     def locate(self, path: str, folder: Path | None = None) -> Path:
         """Return the whole path of a prop's file, spelt in one way. folder: instead of its own."""
@@ -58,12 +61,20 @@ class PropMeshes:
             self._figures[key] = SkinnedFigure(replace(mesh, positions=mesh.positions * np.float32(scale)))
         return self._figures[key]
 
+    def keep_tops(self, key: tuple[Hashable, ...], tops: tuple[PropTop, ...]) -> None:
+        """Keep the tops of a prop where it stands, and those of the last others."""
+        if len(self.tops) >= TOPS:
+            self.tops.clear()
+        self.tops[key] = tops
+
     def keep_used(self, used: set[tuple[Path, float]]) -> None:
         """Forget all figures but some, and the files that none of those is of."""
         self._figures = {key: figure for key, figure in self._figures.items() if key in used}
         places = {place for place, _ in used}
         self.carrying = None
         self.meshes = {place: mesh for place, mesh in self.meshes.items() if place in places}
+        there = set(map(id, self.meshes.values()))
+        self.tops = {key: tops for key, tops in self.tops.items() if id(key[0]) in there}
 
 
 class PropFigures(QObject):

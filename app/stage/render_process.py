@@ -40,7 +40,7 @@ class RenderOrder:
     `preview.looks`; no background is the project's. `start` is the second at which it begins. `captions`
     shows words, `cuts` uses a conversation's camera cuts, and `sticks` draws a stick figure where a character
     has no mesh. `seat` is one of `preview.looks.SEATS`. `transparent` draws nothing behind the
-    character.
+    character, `blurred` blurs what is nearer or farther than the face.
     """
 
     out: Path
@@ -59,6 +59,7 @@ class RenderOrder:
     mode: Mode = "talking"
     seat: str = "stool"
     transparent: bool = False
+    blurred: bool = False
 
 
 def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: WindowJob) -> Path:
@@ -92,7 +93,9 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
         ]
         if wanted.transparent:
             words.append("--transparent")
-        elif wanted.background is not None:
+        elif wanted.blurred:
+            words.append("--depth-of-field")
+        if wanted.background is not None and not wanted.transparent:
             words += ["--background", wanted.background]
         if not wanted.cuts:
             words.append("--no-cuts")

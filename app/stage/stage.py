@@ -29,7 +29,7 @@ class Stage(QObject):
         super().__init__(parent)
         self.session = StageSession(document, self)
         self.figures = Figures(document, jobs, self.session.watch, self)
-        self.performance = StagePerformance(document, self.session, jobs, self)
+        self.performance = StagePerformance(document, self.session, jobs, self, self.figures.props)
         self.playhead = Playhead(self.session, self.performance)
         self.thumbnails = Thumbnails(document, self.session, self.figures, self)
         self.sound = Sound(document, self.session, self.performance, jobs, self)

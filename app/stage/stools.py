@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from app.stage.playback_source import ShownPlayback
 from app.stage.props import PropMeshes
-from app.stage.seat_fit import find_carrying_prop, measure_seat_height
+from app.stage.seat_fit import ABOVE, LEAST, find_carrying_prop, measure_seat_height
 from metagraph.graph.prop import Prop
 from metagraph.graph.seats import find_seat
 from preview.figure import MeshFigure
@@ -40,6 +40,12 @@ def make_stools(
         and find_carrying_prop(project, meshes, seat)[0]
     ):
         return ()
+    if any(
+        LEAST * seat.at[1] < top.meet(seat.at[0], seat.at[2])[0] < seat.at[1] + ABOVE
+        for top in shown.tops
+        if top.meet(seat.at[0], seat.at[2])[1] == 1
+    ):
+        return ()  # what the first speaker has carries the others, too
     if figure is not None:
         high = measure_seat_height(project, seat, figure)
         seat = replace(seat, at=(seat.at[0], high, seat.at[2]))

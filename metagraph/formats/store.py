@@ -41,6 +41,7 @@ from metagraph.formats.project.paths import (
     list_closed_paths,
     move_project,
 )
+from metagraph.formats.project.prop_files import find_prop_files
 from metagraph.formats.project.text import TextError, as_text, read_text_data, to_text
 from metagraph.graph.model import Project
 
@@ -253,22 +254,11 @@ def open_project(path: str | Path, progress: Callable[[int, int], None] | None =
     opened = load_motions(project, path.resolve().parent, progress)  # relative paths start at a link's target
     if names := list_closed_paths(opened.project):
         notes.append(describe_closed_paths(names))
-    notes += _describe_missing_props(opened.project, path.resolve().parent)
+    found_props, told = find_prop_files(opened.project, path.resolve().parent)
+    opened = replace(opened, project=found_props)
+    notes += told
     notes += _describe_missing_picture(opened.project, path.resolve().parent)
     return replace(opened, notes=(*notes, *opened.notes), digest=found, newer=newer)
-
-
-def _describe_missing_props(project: Project, folder: Path) -> list[str]:
-    """Return a note on each prop whose file is not there."""
-    return [
-        phrase(
-            "the prop '{name}' is not drawn: there is no file '{path}'. Put it back, or remove the prop",
-            name=prop.name,
-            path=prop.path,
-        )
-        for prop in project.props.values()
-        if not is_closed(prop.path) and not is_file(folder / prop.path)
-    ]
 
 
 def _describe_missing_picture(project: Project, folder: Path) -> list[str]:

@@ -15,6 +15,7 @@ from metagraph.generation.poses import NUMBERS
 Array = NDArray[Any]
 
 MOVING, RESTING = 1.0, 2.1  # frames: deviations of Gaussians
+TOKENS_RESTING = 3.0  # of joints that rest, where motion is made of tokens
 SLOW, FAST = 0.015, 0.04  # standardised, a frame: how fast a joint's numbers change that rests, that moves
 
 

@@ -18,9 +18,9 @@ from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.features import RATE as SOUND_RATE
 from metagraph.generation.features import (
     FeatureError,
-    compute_conversation_activity,
     count_sound_frames,
     resample_for_features,
+    tell_conversation,
 )
 from metagraph.generation.loudness import compute_gain
 from metagraph.generation.poses import PoseError, PoseRig, find_rig
@@ -138,8 +138,8 @@ def read_side_sound(conversation: Conversation, side: int, folder: Path) -> tupl
 
 @dataclass(frozen=True, eq=False)
 class HeardSpeech:
-    """What motion is made to. samples: `[C, N]` at `features.RATE`, own voice first. activity: who speaks,
-    `[T, 4]`. notes: what is missing, or there is to know, in words.
+    """What motion is made to. samples: `[C, N]` at `features.RATE`, own voice first. activity: marks and
+    who speaks, `[T, TOLD]`. notes: what is missing, or there is to know, in words.
     """
 
     samples: Array
@@ -151,9 +151,7 @@ def hear_side(project: Project, ident: str, side: int, folder: Path) -> HeardSpe
     """Return what is heard in a conversation, as `read_side_sound` does. Raises FileError."""
     samples, notes = read_side_sound(project.conversations[ident], side, folder)
     count = count_sound_frames(samples.shape[1])
-    return HeardSpeech(
-        samples, compute_conversation_activity(project.conversations[ident], side, count), notes
-    )
+    return HeardSpeech(samples, tell_conversation(project.conversations[ident], side, count), notes)
 
 
 def hear_file(path: Path) -> HeardSpeech:

@@ -10,16 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.averaging import Averaging
+from metagraph.generation.averaging import RESTING, TOKENS_RESTING, Averaging
 from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.features import (
-    MELS,
     RATE,
     FeatureStream,
-    compute_conversation_activity,
     count_sound_frames,
-    detect_voice_activity,
     make_silence,
+    tell_by_sound,
+    tell_conversation,
 )
 from metagraph.generation.generators import make_generator
 from metagraph.generation.loudness import compute_gain
@@ -84,8 +83,9 @@ class TakeSampler:
         adaptive = smooth is None and (
             isinstance(sizes, MatchingSizes) or (isinstance(sizes, FlowSizes) and sizes.span > 1)
         )
-        self._averaging = Averaging() if adaptive else Averaging(smooth or 0.0, None)
-        quiet = make_silence(model.card.tracks * MELS)
+        resting = TOKENS_RESTING if isinstance(sizes, MatchingSizes) else RESTING
+        self._averaging = Averaging(resting=resting) if adaptive else Averaging(smooth or 0.0, None)
+        quiet = make_silence(model.card.tracks)
         # Features that are still needed, from `before` frames before the next one made.
         self._heard = model.heard(np.tile(quiet, (self._made.before, 1)))
         self._quiet = model.heard(quiet[None])
@@ -100,7 +100,8 @@ class TakeSampler:
 
     def push(self, audio: Array, activity: Array) -> Array:
         """Return the poses that are ready, local rotations `[n, joints, 4]` of the rig's joints. audio: `[C,
-        N]` at `features.RATE`; activity: of the next frames `[m, 4]`. Raises FeatureError.
+        N]` at `features.RATE`; activity: of the next frames, as for `features.FeatureStream.push`. Raises
+        FeatureError.
         """
         return self._turns(self.numbers(self._features.push(audio, activity)))
 
@@ -202,7 +203,8 @@ def sample_whole(
     name: str = "generated",
 ) -> Clip:
     """Return the motion to a recording, as long as it is. samples: `[C, N]` at `features.RATE`, own voice
-    first; activity: `[T, 4]`, as `features.compute_conversation_activity` or `detect_voice_activity` give it.
+    first; activity: as `features.tell_conversation` or `tell_by_sound` give it, `[T, TOLD]`, or who speaks
+    alone `[T, 4]`.
     Joints that the model does not move are in its base pose, or as `first` has them. Raises FeatureError.
     """
     samples = np.atleast_2d(samples)
@@ -231,16 +233,18 @@ def make_conversation_motion(
     voice first. options: as for `whole`.
     """
     count = count_sound_frames(np.atleast_2d(samples).shape[1])
-    activity = compute_conversation_activity(conversation, side, count)
+    activity = tell_conversation(conversation, side, count)
     name = conversation.sides[side].name or f"{conversation.name}, side {side + 1}"
     return sample_whole(model, samples, activity, seed=seed, **{"name": name, **options})
 
 
 def hear_activity(samples: Array) -> Array:
-    """Return activity `[T, 4]` of a recording without words: samples `[C, N]` at `features.RATE`."""
+    """Return marks and activity `[T, TOLD]` of a recording without words: samples `[C, N]` at
+    `features.RATE`.
+    """
     samples = np.atleast_2d(samples)
     partner = samples[1] if len(samples) > 1 else None
-    return detect_voice_activity(samples[0], partner, RATE, count_sound_frames(samples.shape[1]))
+    return tell_by_sound(samples[0], partner, RATE, count_sound_frames(samples.shape[1]))
 
 
 def make_clip_from_poses(

@@ -28,7 +28,7 @@ from metagraph.common.budgets import ARRAYS
 from metagraph.common.files import check_file, guard_reader
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.generation.features import MELS, as_heard
+from metagraph.generation.features import MARKS, MELS, PITCH, as_heard
 from metagraph.generation.networks import (
     FPS,
     CvaeSizes,
@@ -43,7 +43,7 @@ from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
 
-FORMAT = 3  # 2: pieces of motion that are given by their neighbours, too; 3: Gaussian codes and guesses
+FORMAT = 4  # 2: pieces given by their neighbours, too; 3: Gaussian codes and guesses; 4: pitch and marks
 SUFFIX = ".mgmodel"
 MOST = 512 * 2**20  # bytes of all weights
 MOST_TOLD = 16 * 2**20  # bytes of model.json
@@ -135,7 +135,7 @@ class Model:
 
     @cached_property
     def audio(self) -> Standardisation:
-        """What standardises mels."""
+        """What standardises what is heard beside who speaks."""
         return _scale(self.card.audio_mean, self.card.audio_deviation)
 
     def heard(self, features: Array) -> Array:
@@ -185,8 +185,9 @@ def check_model(model: Model) -> Model:
 def _check_card(card: ModelCard) -> None:
     sizes, rig_numbers = card.sizes, NUMBERS * (len(card.skeleton.roles) - 1)
     audio = sizes.audio if isinstance(sizes, MatchingSizes) else sizes.control.audio
-    if audio != card.tracks * MELS:
-        raise ValueError(f"it hears {audio} numbers a frame, {card.tracks * MELS} are made of a sound")
+    mels = card.tracks * MELS
+    if audio not in (mels, mels + PITCH + MARKS):
+        raise ValueError(f"it hears {audio} numbers a frame, {mels} are made of a sound")
     if card.fps != FPS:
         raise ValueError(f"it is for {card.fps:g} frames a second, {FPS:g} are made")
     if sizes.pose != rig_numbers:

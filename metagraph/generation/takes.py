@@ -18,11 +18,11 @@ from metagraph.generation.features import (
     PARTNER,
     RATE,
     SELF,
-    compute_conversation_activity,
     compute_features,
     count_sound_frames,
-    detect_voice_activity,
     resample_for_features,
+    tell_by_sound,
+    tell_conversation,
 )
 from metagraph.generation.loudness import compute_gain, measure_integrated_loudness
 from metagraph.generation.networks import ACTIVITY, FPS
@@ -95,7 +95,8 @@ NO_MARKS = TakeMarks()
 
 @dataclass(frozen=True, eq=False)
 class Take:
-    """A take, FPS frames a second. poses `[T, X]` and features `[T, audio + 4]`, float32, not standardised.
+    """A take, FPS frames a second. poses `[T, X]` and features `[T, ...]`, as `features`
+    has them, float32, not standardised.
     notes: what there is to know about how it was read, in words.
     """
 
@@ -186,9 +187,10 @@ def make_take(
             )
         )
         partner = sound[1] if len(sound) > 1 else None
-        activity, marks = detect_voice_activity(sound[0], partner, RATE, count), TakeMarks()
+        told, marks = tell_by_sound(sound[0], partner, RATE, count), TakeMarks()
     else:
-        activity, marks = compute_conversation_activity(conversation, side, count), _marks(conversation, side)
+        told, marks = tell_conversation(conversation, side, count), _marks(conversation, side)
+    activity = told[:, -ACTIVITY:]
     own = activity[:, SELF].sum() / FPS
     if activity[:, NONE].sum() / FPS > count / FPS - SPOKEN:
         raise TakeError(f"{who}: nobody speaks in it. Check which sound belongs to it")
@@ -197,7 +199,7 @@ def make_take(
     elif not activity[:, PARTNER].any():
         notes.append(phrase("{who}: the partner never speaks, so it teaches only speaking.", who=who))
     gains = [compute_gain(channel, RATE) for channel in sound]
-    audio = compute_features(sound, activity, tracks, gains)[:count]
+    audio = compute_features(sound, told, tracks, gains)[:count]
     if float(poses[:count].std(0).max()) < 1e-3:
         raise TakeError(f"{who} does not move above the hips: there is nothing to learn")
     marks = marks.shifted(0.0, count / FPS)
@@ -263,10 +265,17 @@ def mirror_take(rig: PoseRig, clip: Clip, take: Take) -> Take:
     )
 
 
-def measure_scales(takes: Sequence[Take]) -> tuple[Standardisation, Standardisation]:
-    """Return what standardises poses, and audio, of takes."""
-    audio = np.concatenate([t.features[:, :-ACTIVITY] for t in takes])
-    return scale_of(np.concatenate([t.poses for t in takes])), scale_of(audio, LEAST_SOUND)
+def measure_scales(takes: Sequence[Take], audio: int = MELS) -> tuple[Standardisation, Standardisation]:
+    """Return what standardises poses, and `audio` numbers of what is heard, of takes: pitch and marks stay as
+    they are, so that 0 remains what is not known.
+    """
+    mels = audio // MELS * MELS
+    sound = scale_of(np.concatenate([t.features[:, :mels] for t in takes]), LEAST_SOUND)
+    rest = np.zeros(audio - mels, np.float32)
+    scale = Standardisation(
+        np.concatenate([sound.mean, rest]), np.concatenate([sound.deviation, np.ones_like(rest)])
+    )
+    return scale_of(np.concatenate([t.poses for t in takes])), scale
 
 
 # --- splits

@@ -18,7 +18,7 @@ from msgspec import Meta, Struct
 from metagraph.common.network_paths import find_refusal
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.generation.features import MELS
+from metagraph.generation.features import count_audio
 from metagraph.generation.networks import Kind, Size, Sizes, make_sizes
 from metagraph.generation.poses import PoseRig
 from metagraph.generation.stored import SkeletonCard, TakeCard, make_skeleton_card
@@ -50,7 +50,9 @@ class TrainingSettings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     voices: share of crops that sound otherwise (`training.voices`), so that a model does not learn one voice
     in one room. early, spread: flow matching asks for velocities at t = sigmoid(N(-early, spread)): near the
     noise it is settled whether something rare happens. turns: crops in which who speaks changes n times weigh
-    (1 + n)^turns; only what is heard decides, so that what is learned of it stays unbiased.
+    (1 + n)^turns; only what is heard decides, so that what is learned of it stays unbiased. unmarked: share
+    of crops whose marks are not known, of those that know all ahead; of the others, UNMARKED. Live, marks are
+    not known.
     """
 
     loss: Loss | None = None
@@ -75,6 +77,7 @@ class TrainingSettings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     early: float = 0.7
     spread: _Positive = 1.2
     turns: Annotated[float, Meta(ge=0, le=8)] = 1.5
+    unmarked: _Share = 0.15
 
 
 def choose_settings(loss: Loss | None, kind: Kind = "matching") -> TrainingSettings:
@@ -164,7 +167,9 @@ def plan_of(
     return TrainingPlan(
         kind=kind,
         size=size,
-        sizes=make_sizes(kind, size, rig.numbers, tracks * MELS, published) if sizes is None else sizes,
+        sizes=make_sizes(kind, size, rig.numbers, count_audio(kind, tracks), published)
+        if sizes is None
+        else sizes,
         tracks=tracks,
         skeleton=make_skeleton_card(rig),
         takes=tuple(make_take_card(t) for t in takes),

@@ -17,7 +17,8 @@ class Prop(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     """A prop. path: of an OBJ, STL, PLY, OFF, 3MF or GLB file, relative to the project file. at: metres,
     where its origin is: from the ground between the character's feet, or from the joint that carries it,
     along that joint's axes. turn: degrees about x, then y, then z. scale: 1 for as large as its file has it,
-    in metres. joint: the name of the joint that carries it, "" if it stands.
+    in metres. joint: the name of the joint that carries it, "" if it stands. sha256: of the file's content
+    when it was added, in hex, "" if unknown.
     """
 
     name: Annotated[str, Meta(max_length=200)]
@@ -26,6 +27,12 @@ class Prop(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     turn: _Three = (0.0, 0.0, 0.0)
     scale: Annotated[float, Meta(gt=0, le=LARGEST)] = 1.0
     joint: Annotated[str, Meta(max_length=200)] = ""
+    sha256: Annotated[str, Meta(pattern="^([0-9a-f]{64})?$")] = ""
+
+    @property
+    def digest(self) -> str:
+        """The digest of its file, as clips have it."""
+        return self.sha256
 
 
 def make_turn(prop: Prop) -> tuple[float, float, float, float]:

@@ -64,10 +64,7 @@ _ADDED = {  # by stage: what it is called, whose causes are looked at, what help
     CONTACTS: (
         phrase("hand contacts and the guard"),
         "left_hand",
-        phrase(
-            "Turn off the guard that keeps hands out of the body (metagraph contacts --guard off), or skip "
-            "the gesture in this stance."
-        ),
+        phrase("Turn off *Keep hands out of the body* under Life, or skip the gesture in this stance."),
     ),
 }
 _NAMES = {
@@ -517,9 +514,12 @@ class _Findings:
         )
         if share < 0.5:
             words = phrase("an arm is {length:.0f} cm inside the body for a moment", length=deep)
-        remedy = phrase(
-            "Turn on the guard that keeps hands out of the body (metagraph contacts --guard on), or skip "
-            "the gesture in this stance."
+        remedy = (
+            phrase("Skip the action in this stance, or move the arm away in its clip.")
+            if self.project.touch.guard
+            else phrase(
+                "Turn on *Keep hands out of the body* under Life, or skip the gesture in this stance."
+            )
         )
         yield self._problem(
             "play-arm-inside",

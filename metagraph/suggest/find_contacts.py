@@ -84,6 +84,11 @@ def find_contacts(project: Project, action: Action) -> tuple[ContactSpan, ...]:
     return tuple(sorted(found, key=lambda s: (s.start, s.hand)))
 
 
+def list_contact_actions(project: Project) -> list[str]:
+    """Return the ids of the actions whose layer moves the arms."""
+    return [a.id for a in project.actions() if project.graphs[a.layer].weight("arms") > 0]
+
+
 def with_contacts(project: Project, actions: Sequence[str]) -> Project:
     """Return a project whose named actions have the contacts found in their motion."""
     changes = {

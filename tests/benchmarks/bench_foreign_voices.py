@@ -24,7 +24,7 @@ from msgspec.structs import replace as changed  # noqa: E402
 from app.cli.command_output import open_for_command  # noqa: E402
 from metagraph.formats.conversations.files import read_conversation  # noqa: E402
 from metagraph.formats.conversations.languages import Speaking  # noqa: E402
-from metagraph.generation.features import compute_conversation_activity, compute_features, count_sound_frames  # noqa: E402
+from metagraph.generation.features import compute_features, count_sound_frames, tell_conversation  # noqa: E402
 from metagraph.generation.performing import read_side_sound  # noqa: E402
 from metagraph.generation.poses import encode_clip  # noqa: E402
 from metagraph.generation.statistics import (  # noqa: E402
@@ -101,9 +101,7 @@ def takes(model: Model, folder: Path) -> tuple[list[Take], list[Take]]:
         for side in (0, 1):
             samples, _ = read_side_sound(read, side, folder)
             count = count_sound_frames(samples.shape[1])
-            heard = compute_features(
-                samples, compute_conversation_activity(read, side, count), model.card.tracks
-            )
+            heard = compute_features(samples, tell_conversation(read, side, count), model.card.tracks)
             for seed, into in ((n, found), (n + AGAIN, again)):
                 clip = perform_planted(project, changed(read, seed=seed), side)
                 poses = encode_clip(model.rig, clip, 25.0)

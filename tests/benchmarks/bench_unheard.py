@@ -1,9 +1,11 @@
-"""Models and sounds they were not learned from: python tests/benchmarks/bench_unheard.py MODEL FOLDER [takes]
+"""Models and sounds they were not learned from:
+python tests/benchmarks/bench_unheard.py MODEL FOLDER [takes] [--unmarked]
 
 FOLDER holds planted takes. Of those that MODEL has not learned from the sound is made otherwise - another
 voice, a telephone, noise, a room, the partner in one's own microphone, the channels' loudness - and the
 model's motion is measured beside the recorded motion, which stays the same. `deaf` hears silence and is told
-who speaks: what remains then was not learned from the sound.
+who speaks: what remains then was not learned from the sound. Stresses, responses and hesitations are those
+that were found in the sound as it was; with --unmarked the model does not know them.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ sys.path.insert(0, str(ROOT))
 import numpy as np  # noqa: E402
 from numpy.typing import NDArray  # noqa: E402
 
-from metagraph.generation.features import RATE, compute_features  # noqa: E402
+from metagraph.generation.features import RATE, TOLD, compute_features  # noqa: E402
 from metagraph.generation.statistics import compute_measures, make_motion_sample, mismatch_speech  # noqa: E402
 from metagraph.generation.stored import read_model  # noqa: E402
 from metagraph.generation.take_files import find_takes, read_speech, read_take_batch  # noqa: E402
@@ -107,7 +109,7 @@ HEARD: dict[str, Callable[[Array], Array]] = {
 }
 
 
-def main(path: Path, folder: Path, count: int) -> None:
+def main(path: Path, folder: Path, count: int, marked: bool = True) -> None:
     model = read_model(path)
     files, _ = find_takes([folder])
     held = {t.name for t in model.card.held_out}
@@ -128,12 +130,16 @@ def main(path: Path, folder: Path, count: int) -> None:
         made = []
         for n, take in enumerate(takes):
             samples = change(read_speech(by_name[take.source.name]).samples)
-            sound = compute_features(samples, np.zeros((0, 4)), model.card.tracks)[: len(take.features), :-4]
-            heard = replace(take, features=np.concatenate([sound, take.features[:, -4:]], 1))
+            sound = compute_features(samples, np.zeros((0, 4)), model.card.tracks)[: len(take.features)]
+            told = take.features[:, -TOLD:].copy()
+            told[:, :-4] *= marked
+            heard = replace(take, features=np.concatenate([sound[:, :-TOLD], told], 1))
             poses = generate_poses(model, heard.features, 1, n, SamplingManner(seeds=1))
             made.append(make_motion_sample(model.rig, poses, take))
         show(name, compute_measures(made, true))
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3]) if len(sys.argv) > 3 else 4)
+    words = [w for w in sys.argv[1:] if w != "--unmarked"]
+    most = int(words[2]) if len(words) > 2 else 4
+    main(Path(words[0]), Path(words[1]), most, "--unmarked" not in sys.argv)

@@ -9,8 +9,9 @@ from pathlib import Path
 
 from metagraph.graph.model import Project
 from tests.engines.cpp_program import compiled, every_part, needs_compiler, write_probe
+from tests.unchanged import only_when_changed
 
-pytestmark = needs_compiler
+pytestmark = [needs_compiler, *only_when_changed("warnings of C++")]
 
 
 def test_the_core_the_plugin_the_example_and_the_programs_of_tests_compile_without_a_warning(

@@ -133,7 +133,7 @@ function Page() {
 }
 createRoot(document.getElementById("root")).render(h(Page));
 window.done = (async () => {
-  while (!(window.object?.time > 1 && window.told.begun.length)) {
+  while (!(window.object?.time > 1 && window.told.begun.length && window.told.turned.size > 3)) {
     await new Promise((next) => setTimeout(next, 100));
     if (window.object) window.told.turned.add(scene.getObjectByName("Head").quaternion.x);
   }

@@ -7,6 +7,7 @@ import struct
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 import trimesh
@@ -14,7 +15,7 @@ import trimesh
 from metagraph.engines.targets.registry import write_for_target
 from metagraph.engines.targets.target import Contents, TargetReport
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips
-from metagraph.graph.editing.props import add_prop
+from metagraph.graph.editing.props import add_prop, set_prop
 from metagraph.graph.model import Project
 from metagraph.graph.prop import Prop
 from tests.conftest import Toy
@@ -81,3 +82,12 @@ def test_a_prop_that_nothing_carries_is_left_out_with_a_word(room: Project, tmp_
     odd, _ = add_prop(room, Prop(name="tail ring", path="desk.glb", joint="Tail"))
     report = write(odd, tmp_path, "metagraph")
     assert any("'tail ring' is left out" in words and "'Tail'" in words for words in report.warnings)
+
+
+def test_an_export_says_that_hands_do_not_rest_on_what_stands_near(room: Project, tmp_path: Path) -> None:
+    def say(project: Project) -> bool:
+        return any("hands do not rest" in words for words in write(project, tmp_path, "metagraph").warnings)
+
+    far = next(ident for ident, prop in room.props.items() if prop.name == "desk")
+    assert say(set_prop(room, far, msgspec.structs.replace(room.props[far], at=(0, 0.35, 0.3))))
+    assert not say(set_prop(room, far, msgspec.structs.replace(room.props[far], at=(0, 0.35, 9))))

@@ -70,6 +70,7 @@ def untrained(kind: Kind = "flow-vae", by: float = 0.05, sizes: Sizes | None = N
     own = rig()
     sizes = tiny(kind, own.numbers) if sizes is None else sizes
     assert count_parameters(sizes) and list_weight_shapes(sizes)
+    audio = sizes.audio if isinstance(sizes, MatchingSizes) else sizes.control.audio
     identity = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
     card = ModelCard(
         kind=kind,
@@ -77,8 +78,8 @@ def untrained(kind: Kind = "flow-vae", by: float = 0.05, sizes: Sizes | None = N
         skeleton=make_skeleton_card(own),
         pose_mean=identity * (own.numbers // 6),
         pose_deviation=(0.05,) * own.numbers,
-        audio_mean=(float(np.log(FLOOR)) / 2,) * MELS,
-        audio_deviation=(4.0,) * MELS,
+        audio_mean=(float(np.log(FLOOR)) / 2,) * MELS + (0.0,) * (audio - MELS),
+        audio_deviation=(4.0,) * MELS + (1.0,) * (audio - MELS),
         versions=list_versions(),
     )
     return Model(card, shaken(sizes, by))

@@ -8,12 +8,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace as changed
 
 from metagraph.generation.features import (
+    OWN_STRESS,
     RATE,
     compute_conversation_activity,
+    count_audio,
     count_sound_frames,
     encode_activity,
+    tell_conversation,
 )
 from metagraph.generation.networks import Control, FlowSizes, make_sizes
 from metagraph.generation.noise import draw_noise
@@ -152,6 +156,19 @@ def test_who_speaks_and_what_is_said_matter(kind):
     )
 
 
+def test_marks_matter_to_a_model_that_is_told_them_and_to_no_other():
+    told = tell_conversation(conversation(3), 0, count_sound_frames(SOUND.shape[1]))
+    other = told.copy()
+    other[:, OWN_STRESS] = np.roll(told[:, OWN_STRESS], 20)
+    hears = changed(MODELS["matching"].card.sizes, audio=count_audio("matching"))
+    for model, matters in ((untrained("matching", sizes=hears), True), (MODELS["matching"], False)):
+        made = [sample_whole(model, SOUND, t).rotations for t in (told, other)]
+        assert (np.abs(made[0] - made[1]).max() > 1e-6) == matters
+        sampler = TakeSampler(model, channels=2)  # live, nobody tells them
+        sampler.push(SOUND, told[:, -4:])
+        assert np.isfinite(sampler.finish()).all()
+
+
 def test_closer_to_the_speech_is_another_motion():
     plain, close = _made("matching", guidance=1.0), _made("matching", guidance=3.0)
     assert np.abs(plain.rotations - close.rotations).max() > 1e-5
@@ -211,7 +228,7 @@ def test_the_shortest_sounds_are_moved_to():
 
 def test_one_voice_alone_will_do():
     told = hear_activity(SOUND[0])
-    assert told.shape == (count_sound_frames(SOUND.shape[1]), 4)
+    assert told.shape == (count_sound_frames(SOUND.shape[1]), 9)
     assert sample_whole(MODELS["flow-vae"], SOUND[0], told).frames == 76
 
 

@@ -229,7 +229,7 @@ def test_a_missing_weight_and_a_missing_card_are_told(kept, tmp_path):
 @pytest.mark.parametrize(
     ("field", "value", "why"),
     [
-        ("format", 4, "has format 4, this version reads 3.*newer version"),
+        ("format", 5, "has format 5, this version reads 4.*newer version"),
         ("kind", "gan", "Invalid enum"),
         ("fps", 30.0, "25 are made"),
         ("tracks", 2, "it hears 27 numbers a frame, 54"),

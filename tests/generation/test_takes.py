@@ -39,7 +39,7 @@ def _take(seconds=12.0, seed=1, name=None, digests=None, talk=True, **given):
 def test_a_take_is_as_long_as_the_shorter_of_motion_and_sound():
     take = _take(8)
     assert take.poses.shape == (201, 78)
-    assert take.features.shape == (201, 31)
+    assert take.features.shape == (201, 38)
     assert take.notes == ()
     short = _take(8, samples=np.stack([babble(5, 1), babble(5, 2)]))
     assert len(short.poses) == len(short.features) == 126
@@ -98,7 +98,7 @@ def test_what_can_be_learned_from_all_the_same_is_told():
 
 def test_two_tracks_of_one_voice_leave_the_other_silent():
     take = _take(samples=babble(12, 1), tracks=2)
-    assert take.features.shape[1] == 58
+    assert take.features.shape[1] == 65
     assert np.ptp(take.features[:, 27:54]) == 0
 
 

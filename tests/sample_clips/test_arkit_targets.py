@@ -17,9 +17,9 @@ from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from sample_clips.make.looks import LOOKS
 from sample_clips.make.shapes import JOINT, MOUTH_Y
-from tests.sample_clips.unchanged import only_when_changed
+from tests.unchanged import only_when_changed
 
-pytestmark = only_when_changed()
+pytestmark = only_when_changed("sample clips")
 
 FOLDER = Path(__file__).parents[2] / "sample_clips"
 EYE = tuple(JOINT["LeftEye"])

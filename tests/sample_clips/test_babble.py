@@ -11,9 +11,9 @@ from metagraph.speech.phones import list_mouth_pieces
 from metagraph.speech.sound import read_sound
 from metagraph.speech.textgrid import read_textgrid
 from sample_clips.make.babble import FOLDER, LINES, RATE, sample_lines, spoken, text_grid
-from tests.sample_clips.unchanged import only_when_changed
+from tests.unchanged import only_when_changed
 
-pytestmark = only_when_changed()
+pytestmark = only_when_changed("sample clips")
 
 NAMES = [name for name, _, _ in LINES]
 

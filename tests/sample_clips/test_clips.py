@@ -16,9 +16,9 @@ from sample_clips.make.mannequin_rig import FPS, REACH, SKELETON, at
 from sample_clips.make.measure import Measures, head_ways, likeness, measure, way_of
 from sample_clips.make.recipe import animate, follower
 from sample_clips.make.shapes import MOUTH_Y
-from tests.sample_clips.unchanged import only_when_changed
+from tests.unchanged import only_when_changed
 
-pytestmark = only_when_changed()
+pytestmark = only_when_changed("sample clips")
 
 FOLDER = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"
 ENTRIES = {entry.name: entry for entry in catalogue()}

@@ -10,9 +10,9 @@ from sample_clips.make.default_body import make
 from sample_clips.make.default_body.forms import whole
 from sample_clips.make.default_body.joints import default_skeleton
 from sample_clips.make.sculpt import ellipsoid
-from tests.sample_clips.unchanged import only_when_changed
+from tests.unchanged import only_when_changed
 
-pytestmark = only_when_changed()
+pytestmark = only_when_changed("sample clips")
 
 
 def borders(triangles: np.ndarray) -> np.ndarray:

@@ -12,9 +12,9 @@ from metagraph.graph.model import LAYERS, Project
 from metagraph.mimicry.keypoint_layouts import LAYOUTS
 from metagraph.mimicry.mimic import Mimic
 from sample_clips.make.sample_keypoints import OUT, SCRIPT, SECONDS, View, played, seen, truth
-from tests.sample_clips.unchanged import only_when_changed
+from tests.unchanged import only_when_changed
 
-pytestmark = only_when_changed()
+pytestmark = only_when_changed("sample clips")
 
 NAMES = ["conversation.mediapipe.jsonl", "conversation.openpose.json", "conversation.truth.json"]
 

@@ -24,9 +24,9 @@ from sample_clips.make.measure import Measures, measure
 from sample_clips.make.recipe import animate
 from sample_clips.make.stance_clips import SEAT
 from tests.posing import contact_rig, pose_at
-from tests.sample_clips.unchanged import only_when_changed
+from tests.unchanged import only_when_changed
 
-pytestmark = only_when_changed()
+pytestmark = only_when_changed("sample clips")
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_clips"
 ENTRIES = {entry.name: entry for entry in catalogue(SEATED)}

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from PySide6.QtCore import QSize, Qt
-from PySide6.QtGui import QIcon, QPixmap
+from PySide6.QtGui import QIcon, QPainter, QPixmap
 from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
@@ -123,13 +123,22 @@ class CharacterGallery(QDialog):
         self._look([self.list.item(n) for n in range(self.list.count())])
 
     def _add(self, choice: CharacterCard) -> QListWidgetItem:
-        empty = QPixmap(SIDE, SIDE)
-        empty.fill(Qt.GlobalColor.transparent)
-        item = QListWidgetItem(QIcon(empty), choice.name, self.list)
+        item = QListWidgetItem(QIcon(self._write(tr("Drawing…"))), choice.name, self.list)
         item.setToolTip(choice.note or choice.name)
         item.setData(ROLE, choice)
         item.setTextAlignment(Qt.AlignmentFlag.AlignHCenter)
         return item
+
+    def _write(self, words: str) -> QPixmap:
+        """Return words in the place of a picture."""
+        out = QPixmap(SIDE, SIDE)
+        out.fill(Qt.GlobalColor.transparent)
+        painter = QPainter(out)
+        painter.setFont(self.font())
+        painter.setPen(self.palette().placeholderText().color())
+        painter.drawText(out.rect(), Qt.AlignmentFlag.AlignCenter, words)
+        painter.end()
+        return out
 
     def _look(self, items: Sequence[QListWidgetItem]) -> None:
         """Read the files and draw them, beside the window."""
@@ -165,6 +174,8 @@ class CharacterGallery(QDialog):
             icon = QIcon(picture)
             icon.addPixmap(picture, QIcon.Mode.Selected)  # Qt would tint it
             item.setIcon(icon)
+        else:
+            item.setIcon(QIcon(self._write(tr("No picture"))))
         item.setData(ROLE, replace(item.data(ROLE), refused=portrait.refused))
         if portrait.refused:
             item.setForeground(self.palette().placeholderText())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QWidget
 
+from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
 from app.translation import tr
 
@@ -14,7 +15,26 @@ def contribute(shell: Shell) -> Contribution:
 
         return LifePanel(shell.document, shell.stage.session, shell.widget)
 
+    def find() -> None:
+        from app.features.life.hand_contacts import find_hand_contacts
+
+        find_hand_contacts(shell)
+
     return Contribution(
+        commands=(
+            Command(
+                "hand contacts",
+                "&Graph",
+                "author",
+                tr("Find hand c&ontacts"),
+                find,
+                tip=tr(
+                    "Find in all actions where hands touch the body, and keep them there on any character"
+                ),
+                enabled=lambda: any(shell.document.project.actions()),
+                when="meta",
+            ),
+        ),
         panels=(
             Panel(
                 "life",

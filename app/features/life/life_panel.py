@@ -5,8 +5,10 @@ off for each amount.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
+import msgspec
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import (
@@ -137,6 +139,18 @@ class LifePanel(QWidget):
         self.on = QCheckBox(tr("Alive: breathing, gaze, blinks and lip sync"), self)
         self.on.clicked.connect(lambda on: self._change(tr("Turn life on or off"), on=on))
         outer.addWidget(self.on)
+        self.guard = QCheckBox(tr("Keep hands out of the body"), self)
+        self.guard.setToolTip(
+            tr("Hands and forearms slide along body, head and each other instead of entering")
+        )
+        self.guard.clicked.connect(lambda on: self._touch(tr("Turn the guard of hands on or off"), guard=on))
+        self.contacts = QCheckBox(tr("Keep hand contacts"), self)
+        self.contacts.setToolTip(
+            tr("Hands stay where they touch the body. Find contacts with Graph > Find hand contacts")
+        )
+        self.contacts.clicked.connect(lambda on: self._touch(tr("Turn hand contacts on or off"), contacts=on))
+        for box in (self.guard, self.contacts):
+            outer.addWidget(box)
         top = QGridLayout()
         top.setHorizontalSpacing(10)
         outer.addLayout(top)
@@ -234,6 +248,8 @@ class LifePanel(QWidget):
             self.pages[self.mode].setAutoFillBackground(False)  # which the area turns on
             self.pages[self.mode].show()
         self.on.setChecked(life.on)
+        self.guard.setChecked(self.document.project.touch.guard)
+        self.contacts.setChecked(self.document.project.touch.contacts)
         named = next((f for f, point in MOODS.items() if point == (life.valence, life.arousal)), None)
         self.moods.setCurrentIndex(self.moods.findData(named))
         for name, row in self.rows.items():
@@ -244,10 +260,16 @@ class LifePanel(QWidget):
         self.area.setEnabled(life.on)
 
     def _edited(self, before: Project, after: Project) -> None:
-        if before.life is not after.life:
+        if before.life is not after.life or before.touch is not after.touch:
             self._show()
 
     # --- changing
+
+    def _touch(self, text: str, **changes: bool) -> None:
+        def change(project: Project) -> Project:
+            return replace(project, touch=msgspec.structs.replace(project.touch, **changes))
+
+        self.document.edit(text, change)
 
     def _dial(self, dial: Dial, mode: Mode | None, value: float, done: bool) -> None:
         """Set a number; what is dragged is one step to undo."""

@@ -27,6 +27,7 @@ from app.features.props.placing import Placing
 from app.look.names import make_readable_name
 from app.project.jobs import Jobs
 from app.stage.figures import Figures
+from app.stage.prop_contacts import list_prop_tops
 from app.stage.seat_fit import SAME, find_carrying_prop, fit_prop_to_seat, measure_seat_height
 from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_noop, tr_plural
@@ -127,7 +128,7 @@ class PropsPanel(QWidget):
         self.seat_button.setToolTip(
             tr("Makes the prop as high as the body above it: larger or smaller, or lifted if it is")
         )
-        self.seat_button.clicked.connect(self.fit_to_seat)
+        self.seat_button.clicked.connect(self.fit)
         grid.addWidget(self.seat_words, 3, 0, 1, 4)
         grid.addWidget(self.seat_button, 3, 4, 1, 2)
         self.outside = QLabel(self)
@@ -304,10 +305,46 @@ class PropsPanel(QWidget):
                 words = tr("The body sits {off} cm above {name}", off=-off, name=prop.name)
             else:
                 words = tr("The body sits on {name}", name=prop.name)
+        hands = self._measure_hands() if found is None else None
+        if hands is not None and prop is not None:
+            off = round(hands[0] * 100)
+            if off > 0:
+                words = tr("Hands pass {off} cm below the top of {name}", off=off, name=prop.name)
+            else:
+                words = tr("Hands rest on {name}", name=prop.name)
+        self.seat_button.setText(tr("Fit to the hands") if hands is not None else tr("Fit to who sits"))
+        self.seat_button.setToolTip(
+            tr("Makes the prop so low that hands rest on it: smaller, or lower if it is lifted")
+            if hands is not None
+            else tr("Makes the prop as high as the body above it: larger or smaller, or lifted if it is")
+        )
         self.seat_words.setText(words)
         self.seat_words.setVisible(bool(words))
         self.seat_button.setVisible(bool(words))
-        self.seat_button.setEnabled(found is not None and abs(found[0] - found[1]) > SAME)
+        sinks = found is not None and abs(found[0] - found[1]) > SAME
+        self.seat_button.setEnabled(sinks or (hands is not None and hands[0] > 0))
+
+    def _measure_hands(self) -> tuple[float, float] | None:
+        """Return how far hands pass below the chosen prop, and how high it is, metres; None if no hand comes
+        there.
+        """
+        from app.stage.hand_fit import measure_hands_below
+
+        prop = self.prop
+        if prop is None or prop.joint:
+            return None
+        return measure_hands_below(self.document.project, list_prop_tops(prop, self.figures.props.meshes))
+
+    def fit(self) -> None:
+        """Make the chosen prop as high as who sits on it, or so low that hands rest on it."""
+        from app.stage.hand_fit import find_fitting_height
+
+        prop, hands = self.prop, self._measure_hands()
+        if prop is None or self._measure_seat() is not None:
+            self.fit_to_seat()
+        elif hands is not None:
+            fitted = fit_prop_to_seat(prop, hands[1], find_fitting_height(*hands))
+            self.placing.edit(tr("Fit {name} to the hands", name=prop.name), self.current, fitted)
 
     def fit_to_seat(self) -> None:
         """Make the chosen prop as high as who sits on it."""
@@ -377,13 +414,16 @@ class PropsPanel(QWidget):
 
     def add(self, paths: Sequence[Path]) -> None:
         """Read files on a thread, and add those that can be drawn as one step; say why others cannot."""
+        from metagraph.formats.clips import digest
         from metagraph.formats.props.reader import read_prop
+
+        digests: dict[Path, str] = {}
 
         def read(_: object) -> tuple[dict[Path, CharacterMesh], list[FileError]]:
             good, bad = {}, []
             for path in paths:
                 try:
-                    good[path] = read_prop(path)
+                    good[path], digests[path] = read_prop(path), digest(path)
                 except FileError as error:
                     bad.append(error)
             return good, bad
@@ -393,13 +433,15 @@ class PropsPanel(QWidget):
             for path, mesh in good.items():
                 self.figures.props.keep_mesh(path, mesh)
             if good:
-                self._place([path for path in paths if path in good], good)
+                self._place([path for path in paths if path in good], good, digests)
             for error in bad:
                 self.document.failed.emit(tr_error(error))
 
         self.jobs.start("props", read, place, lambda error: self.document.failed.emit(tr_error(error)))
 
-    def _place(self, paths: Sequence[Path], meshes: Mapping[Path, CharacterMesh]) -> None:
+    def _place(
+        self, paths: Sequence[Path], meshes: Mapping[Path, CharacterMesh], digests: Mapping[Path, str]
+    ) -> None:
         """Add props in a row beside the character, to the viewer's right, none in another."""
         added: list[str] = []
         standing = [p for p in self.plan.props.values() if abs(p.at[2]) < BESIDE]
@@ -413,7 +455,8 @@ class PropsPanel(QWidget):
                     float(meshes[path].positions[:, 0].max()),
                 )
                 at = (round(right - low, 3), 0.0, 0.0)
-                prop = Prop(name=path.stem, path=make_path_for_project(path, self.document.folder), at=at)
+                place, sha256 = make_path_for_project(path, self.document.folder), digests.get(path, "")
+                prop = Prop(name=path.stem, path=place, at=at, sha256=sha256)
                 project, ident = add_prop(project, prop)
                 added.append(ident)
                 right += high - low + GAP

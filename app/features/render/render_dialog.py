@@ -102,17 +102,19 @@ class RenderDialog(QDialog):
         """Add how much is written. length: in seconds."""
         self.seconds = DoubleSpinBox(self, minimum=0.1, maximum=3600, decimals=1, suffix=" s")
         self.seconds.setValue(length)
-        self.part = ComboBox(
-            self, toolTip=tr("Write the whole performance, or only the loop range of the timeline")
-        )
-        self.part.addItem(tr("Everything, from the start"), None)
+        self.part = ComboBox(self, toolTip=tr("Where it begins, or the loop range of the timeline"))
+        self.part.addItem(tr("From the start"), 0.0)
+        transport = self.session.transport
+        if transport.show == "plan" and transport.seconds >= 0.1:
+            now = round(transport.seconds, 2)
+            self.part.addItem(tr("From the playhead, {start:.2f} s", start=now), now)
         self.range = self.performance.timeline.range
         if self.range is not None:
             self.part.addItem(
                 tr("Loop range, {start:.2f} to {end:.2f} s", start=self.range[0], end=self.range[1]),
                 self.range,
             )
-            self.part.setCurrentIndex(1)
+            self.part.setCurrentIndex(self.part.count() - 1)
         self.part.activated.connect(lambda _: self._suffixed())
         self.form.addRow(tr("Range"), self.part)
         self.form.addRow(tr("Length"), self.seconds)
@@ -148,6 +150,9 @@ class RenderDialog(QDialog):
         self._opaque = self.background.currentIndex()  # what is chosen where nothing can be transparent
         self.form.addRow(tr("Light"), self.light)
         self.form.addRow(tr("Background"), self.background)
+        self.blurred = QCheckBox(tr("Blur what is nearer or farther than the face"), self)
+        self.form.addRow(tr("Depth of field"), self.blurred)
+        self.background.currentIndexChanged.connect(self._offer_blur)
         self.captions = QCheckBox(tr("Show the spoken words at the bottom of the picture"), self)
         self.captions.setChecked(self.performance.timeline.now.captions)
         self.form.addRow(tr("Captions"), self.captions)
@@ -184,10 +189,9 @@ class RenderDialog(QDialog):
         self.file.setText(str(Path(self.file.text()).with_suffix(suffix)))
         drawn = suffix in (*VIDEOS, ".png")
         self._offer_transparency(suffix)
-        for row in (self.size_box, self.light, self.background):
+        for row in (self.size_box, self.light, self.background, self.blurred):
             self.form.setRowVisible(row, drawn)
-        self.form.setRowVisible(self.part, self.range is not None)
-        self.form.setRowVisible(self.seconds, self.part.currentData() is None)
+        self.form.setRowVisible(self.seconds, isinstance(self.part.currentData(), float))
         self.form.setRowVisible(self.fps, suffix != ".png")
         self.form.setRowVisible(self.captions, drawn)
         self.form.setRowVisible(self.cuts, drawn and bool(self.performance.timeline.now.cuts))
@@ -211,6 +215,10 @@ class RenderDialog(QDialog):
         elif suffix == ".mp4" and held:
             self.background.setCurrentIndex(self._opaque)
 
+    def _offer_blur(self) -> None:
+        """Offer to blur where there is something behind the character."""
+        self.blurred.setEnabled(self.background.currentData() != TRANSPARENT)
+
     def _browse(self) -> None:
         suffix = self.kind.currentData()
         name, _ = QFileDialog.getSaveFileName(
@@ -222,7 +230,8 @@ class RenderDialog(QDialog):
     def _write(self) -> None:
         document = self.performance.document
         clear = self.background.currentData() == TRANSPARENT
-        start, end = self.part.currentData() or (0.0, self.seconds.value())
+        part = self.part.currentData()
+        start, end = (part, part + self.seconds.value()) if isinstance(part, float) else part
         wanted = RenderOrder(
             Path(self.file.text()),
             self.session.onstage.performance,
@@ -240,6 +249,7 @@ class RenderDialog(QDialog):
             self.session.onstage.improvised,
             self.session.watch.now.seat,
             clear,
+            self.blurred.isChecked() and not clear,
         )
         QSettings().setValue("render/size", self.size_box.currentIndex())
         project, folder = document.project, document.folder or Path()

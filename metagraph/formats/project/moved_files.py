@@ -6,6 +6,7 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Protocol
 
 from metagraph.common.files import is_file
 from metagraph.errors import FileError
@@ -14,6 +15,13 @@ from metagraph.graph.model import ClipEntry, Project
 
 SEARCHED = 20_000  # files looked at when clips have moved
 COMPARED = 2 << 30  # bytes of those files that are compared by content
+
+
+class Digested(Protocol):
+    """What has a file whose content is known."""
+
+    @property
+    def digest(self) -> str: ...
 
 
 def find_clip_place(entry: ClipEntry, folder: Path | None) -> Path:
@@ -38,7 +46,7 @@ def list_missing_clips(project: Project, folder: Path | None) -> dict[str, list[
 
 
 def find_moved_files(
-    lost: Mapping[str, Iterable[ClipEntry]], folder: Path, by_name: bool = False
+    lost: Mapping[str, Iterable[Digested]], folder: Path, by_name: bool = False
 ) -> dict[str, Path]:
     """Search below a folder for files with the content of lost ones, those of the same name first.
 

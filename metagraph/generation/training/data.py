@@ -90,12 +90,14 @@ class TrainingCorpus:
         chosen = torch.rand(len(starts), generator=chance) < voices
         if not chosen.any():
             return rows
-        audio = rows[chosen, :, :-ACTIVITY] * self.audio[1] + self.audio[0]
-        count, frames, numbers = audio.shape
+        numbers = len(self.audio[0]) // MELS * MELS
+        mean, deviation = (some[:numbers] for some in self.audio)
+        audio = rows[chosen, :, :numbers] * deviation + mean
+        count, frames, _ = audio.shape
         tracks = audio.reshape(count, frames, -1, MELS).transpose(1, 2).reshape(-1, frames, MELS)
         tracks = vary_voices(tracks, chance).reshape(count, -1, frames, MELS).transpose(1, 2)
-        other = (tracks.reshape(count, frames, numbers) - self.audio[0]) / self.audio[1]
-        rows[chosen, :, :-ACTIVITY] = other.clamp(-STRANGEST, STRANGEST)
+        other = (tracks.reshape(count, frames, numbers) - mean) / deviation
+        rows[chosen, :, :numbers] = other.clamp(-STRANGEST, STRANGEST)
         return rows
 
     def longest_crop(self, wanted: int) -> int:

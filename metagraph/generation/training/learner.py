@@ -9,7 +9,7 @@ import numpy as np
 import torch
 
 from metagraph.generation.initial import make_initial_weights
-from metagraph.generation.networks import Weights, list_weight_shapes
+from metagraph.generation.networks import MatchingSizes, Weights, list_weight_shapes
 from metagraph.generation.takes import Take, measure_scales
 from metagraph.generation.train_plan import TrainingPlan
 from metagraph.generation.training.checkpoint import Arrays
@@ -30,7 +30,9 @@ class Learner:
 
     def __init__(self, plan: TrainingPlan, takes: Sequence[Take]) -> None:
         self.plan, self.step = plan, 0
-        self.poses, self.audio = measure_scales(takes)
+        sizes = plan.sizes
+        audio = sizes.audio if isinstance(sizes, MatchingSizes) else sizes.control.audio
+        self.poses, self.audio = measure_scales(takes, audio)
         self.corpus = TrainingCorpus(takes, self.poses, self.audio, *count_edge_frames(plan.sizes))
         self.chance = torch.Generator().manual_seed(plan.seed)
         torch.manual_seed(plan.seed)

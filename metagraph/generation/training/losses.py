@@ -15,7 +15,8 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 from metagraph.generation import chunks, vae
-from metagraph.generation.networks import Control, CvaeSizes, MatchingSizes, Sizes, Weights
+from metagraph.generation.features import MELS, TOLD
+from metagraph.generation.networks import ACTIVITY, Control, CvaeSizes, MatchingSizes, Sizes, Weights
 from metagraph.generation.poses import NUMBERS
 from metagraph.generation.train_plan import Loss, TrainingSettings
 from metagraph.generation.training.autoencoder import set_components, train_autoencoder
@@ -26,6 +27,7 @@ from metagraph.generation.training.nets import Net, load, read_net_weights
 
 ALPHA = {"paper": 5e-4, "finished": 1.0}  # of the likelihood, in bits
 THIRD = {"paper": 1.0, "finished": 0.0}
+UNMARKED = 0.6  # share of chunks that do not know all ahead whose marks are not known
 SHIFTS = 2  # frames between the beginnings of codes that a guess is made of
 
 
@@ -314,6 +316,9 @@ class MatchingObjective(Objective):
         features = corpus.hear(starts, first, last, s.voices, chance)
         ahead = torch.randint(sizes.most + 1, (batch,), generator=chance)
         full = torch.rand(batch, generator=chance) < s.known
+        if sizes.audio % MELS:
+            unknown = torch.rand(batch, generator=chance) < torch.where(full, s.unmarked, UNMARKED)
+            features[unknown, :, -TOLD:-ACTIVITY] = 0
         deaf = torch.rand(batch, generator=chance) < s.sound_dropped
         told = net.frames(features, torch.where(full, sizes.most, ahead), deaf)
         heard = net.heard(told, deaf)

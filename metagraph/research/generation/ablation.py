@@ -18,7 +18,17 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.generation.features import BOTH, MELS, NONE, PARTNER, SELF, compute_features
+from metagraph.generation.features import (
+    BOTH,
+    HESITATION,
+    MELS,
+    NONE,
+    PARTNER,
+    PARTNER_STRESS,
+    SELF,
+    TOLD,
+    compute_features,
+)
 from metagraph.generation.networks import (
     ACTIVITY,
     FPS,
@@ -175,7 +185,7 @@ def _control(sizes: FlowSizes | CvaeSizes, **new: int) -> FlowSizes | CvaeSizes:
 
 
 def ablate_features(change: AblationChange, take: Take, files: Mapping[str, TakeFiles]) -> Array:
-    """Return what is left of a take's features `[T, audio + 4]`. files: by the takes' names, whose sounds are
+    """Return what is left of a take's features `[T, ...]`. files: by the takes' names, whose sounds are
     heard again without the partner. Raises FileError.
     """
     out = take.features.copy()
@@ -183,10 +193,12 @@ def ablate_features(change: AblationChange, take: Take, files: Mapping[str, Take
     if change.hearing == "activity":
         activity[:] = 0
         activity[:, NONE] = 1
+        out[:, -TOLD:-ACTIVITY] = 0
     elif change.hearing == "partner":
         activity[:, SELF] += activity[:, BOTH]
         activity[:, NONE] += activity[:, PARTNER]
         activity[:, [PARTNER, BOTH]] = 0
+        out[:, -TOLD:][:, [PARTNER_STRESS, HESITATION]] = 0
         found = files.get(take.source.name)
         samples = read_speech(found).samples if found is not None else None
         tracks = (out.shape[1] - ACTIVITY) // MELS
@@ -194,7 +206,7 @@ def ablate_features(change: AblationChange, take: Take, files: Mapping[str, Take
             samples = np.stack([samples[0], np.zeros_like(samples[0])])
             first = round(take.source.start * FPS)
             alone = compute_features(samples, np.zeros((0, ACTIVITY)), tracks)
-            out[:, :-ACTIVITY] = alone[first : first + len(out), :-ACTIVITY]
+            out[:, :-TOLD] = alone[first : first + len(out), :-TOLD]
     return out
 
 

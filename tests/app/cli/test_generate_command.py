@@ -11,6 +11,7 @@ import zipfile
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -36,7 +37,9 @@ from metagraph.motion.skeleton import Skeleton
 from metagraph.research.generation.planted import perform_planted as perform
 from tests.generation.makers import babble, moving, stance, tiny, untrained
 
-WHOLE = Path(__file__).resolve().parents[3] / "sample_clips" / "conversation" / "talk.ogg"
+SAMPLES = Path(__file__).resolve().parents[3] / "sample_clips"
+WHOLE = SAMPLES / "conversation" / "talk.ogg"
+SHIPPED = SAMPLES / "models" / "own.mgmodel"
 TORCH = importlib.util.find_spec("torch") is not None
 
 
@@ -201,6 +204,42 @@ def test_a_model_that_is_not_there_is_told(tmp_path: Path, capsys: pytest.Captur
 
 
 # --- sample, cut
+
+
+def test_what_is_written_is_alive_unless_it_is_to_be_bare(
+    talk: Path, toy: Any, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    moved = {}
+    for how in ([], ["--bare"]):
+        out = tmp_path / f"{len(how)}.glb"
+        run(capsys, "sample", SHIPPED, "--speech", talk, "-o", out, *how)
+        clip = read_clips(out)[0]
+        turned = np.ptp(clip.rotations, axis=0).max(1) > 1e-4
+        moved[bool(how)] = {clip.skeleton.names[j] for j in np.flatnonzero(turned)}
+        assert bool(clip.morphs) != bool(how)
+        assert (np.ptp(clip.translations[:, 0], axis=0).max() > 1e-3) != bool(how)  # the hips
+    assert {"LeftUpperLeg", "RightThumb1", "LeftEye"} <= moved[False] - moved[True]
+    save_project(toy.project(), tmp_path / "toy.metagraph.yaml")
+    words = [
+        "--speech",
+        str(talk),
+        "-o",
+        str(tmp_path / "b.bvh"),
+        "--project",
+        str(tmp_path / "toy.metagraph.yaml"),
+    ]
+    assert main(["generate", "sample", str(SHIPPED), *words]) == 0
+    assert "the motion is bare" in capsys.readouterr().err  # the project's skeleton is another
+
+
+def test_a_person_alone_counts_as_speaking(
+    talk: Path, model: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    samples, rate = soundfile.read(str(talk))
+    soundfile.write(str(tmp_path / "alone.wav"), samples.mean(1), rate)
+    words = ("--speech", tmp_path / "alone.wav", "-o", tmp_path / "o.bvh", "--json")
+    shares = json.loads(run(capsys, "sample", model, *words))["activity"]
+    assert shares["speaking"] > 0.4 and shares["listening"] == shares["both"] == 0
 
 
 @pytest.mark.nightly

@@ -119,6 +119,14 @@ def test_held_out_speech_is_counted(folder: Path, capsys: pytest.CaptureFixture[
     assert [r["search"] for r in data["rows"]] == ["greedy"] and data["cases"] == 3
 
 
+def test_speech_is_found_in_a_folder(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    takes = str(folder / "takes")
+    (folder / "notes.json").write_text("{}")  # no take has its name
+    named = run(capsys, "co-occurrence", takes, *said(folder))
+    assert run(capsys, "co-occurrence", takes, "--speech", str(folder)) == named
+    assert "no speech for take0" in run(capsys, "co-occurrence", takes, "--speech", takes, code=1)
+
+
 def test_an_evaluation_that_is_stopped_keeps_its_cases(
     folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -55,3 +55,34 @@ def test_a_mode_beside_a_kept_performance_is_refused_and_not_ignored(tmp_path, c
     words = ["render", str(SAMPLE), "-o", out, "-s", "1", "--performance", "greeting", "--mode", "idle"]
     assert main(words) == 1
     assert "a saved performance has its own mode" in capsys.readouterr().err
+
+
+def test_depth_of_field_needs_something_behind_the_character(tmp_path, capsys):
+    from app.cli.parser import main
+
+    words = [
+        "render",
+        str(SAMPLE),
+        "-o",
+        str(tmp_path / "a.png"),
+        "-s",
+        "1",
+        "--transparent",
+        "--depth-of-field",
+    ]
+    assert main(words) == 1
+    assert "give --transparent or --depth-of-field" in capsys.readouterr().err
+
+
+def test_a_written_performance_rests_its_hands_where_the_pictures_have_them(tmp_path):
+    from app.cli.parser import main
+    from metagraph.formats.bvh.file import read_bvh
+    from metagraph.formats.store import save_project
+    from sample_clips.make.at_a_desk import make_desk_talk
+
+    place = tmp_path / "desk.metagraph.yaml"
+    save_project(make_desk_talk(), place)
+    assert main(["render", str(place), "-o", str(tmp_path / "a.bvh"), "-s", "1", "--bvh-metres"]) == 0
+    clip = read_bvh(tmp_path / "a.bvh")
+    _, at = clip.skeleton.globals(clip.pose_at(0.5))
+    assert 0.74 < at[clip.skeleton.index("LeftHand"), 1] < 0.8

@@ -21,6 +21,26 @@ def test_options_of_bvh_are_for_bvh(tmp_path: Path, capsys: pytest.CaptureFixtur
         assert "--bvh-order and --bvh-metres are for .bvh files" in capsys.readouterr().err
 
 
+def test_a_clip_that_is_not_there_is_refused_with_the_names_of_those_that_are(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], toy: Any
+) -> None:
+    project: Any = toy.project()
+    path = tmp_path / "made.metagraph.yaml"
+    names = ["hh, own, seed 1", *(f"other {n}" for n in range(30))]
+    clips = dict(project.clips)
+    motion = next(iter(clips.values())).motion
+    made = {}
+    for n, name in enumerate(names):
+        write_bvh(motion, tmp_path / f"clip{n}.bvh")
+        entry = next(iter(clips.values()))
+        made[f"c{n}"] = replace(entry, id=f"c{n}", name=name, path=f"clip{n}.bvh")
+    save_project(replace(project, clips={**clips, **made}), path)
+    assert main(["render", str(path), "-o", str(tmp_path / "a.png"), "--clip", "hh"]) == 1
+    said = capsys.readouterr().err
+    assert "there is no clip 'hh' in the project; its clips are 'hh, own, seed 1', " in said
+    assert " more" in said
+
+
 def test_a_name_that_two_clips_have_is_refused_with_their_ids(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], toy: Any
 ) -> None:

@@ -18,6 +18,9 @@ from metagraph.engines.translation.source import SourceModule, SubsetError
 from metagraph.engines.translation.translating import print_modules, read_modules, read_typed_modules
 from tests.engines import cpp_program
 from tests.engines.translation import every_means
+from tests.unchanged import only_when_changed
+
+pytestmark = only_when_changed("translation")
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[2]

@@ -8,7 +8,7 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="training needs torch, which is not installed")
 
-from metagraph.generation.features import STRANGEST  # noqa: E402
+from metagraph.generation.features import STRANGEST, count_audio  # noqa: E402
 from metagraph.generation.networks import ACTIVITY  # noqa: E402
 from metagraph.generation.takes import measure_scales  # noqa: E402
 from metagraph.generation.training.data import TrainingCorpus  # noqa: E402
@@ -40,12 +40,12 @@ def test_what_is_learned_from_stays_as_it_was(corpus: Any) -> None:
 
 def test_both_tracks_sound_otherwise_each_in_its_own_way() -> None:
     takes = [take(8.0, 1, tracks=2)]
-    two = TrainingCorpus(takes, *measure_scales(takes), before=5, after=25)
+    two = TrainingCorpus(takes, *measure_scales(takes, count_audio("matching", 2)), before=5, after=25)
     starts = torch.arange(5, 15)
     heard = two.hear(starts, 0, 40, 1.0, torch.Generator().manual_seed(2))
     plain = two.rows(two.heard, starts, 0, 40)
     changed = (heard - plain).abs().mean((0, 1))
-    assert changed.shape == (58,) and float(changed[:54].min()) > 0 and not changed[54:].any()
+    assert changed.shape == (65,) and float(changed[:54].min()) > 0 and not changed[54:].any()
 
 
 def test_crops_in_which_who_speaks_changes_are_drawn_oftener_and_none_leaves_its_take() -> None:

@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from msgspec.structs import replace as changed
 
 torch = pytest.importorskip("torch", reason="training needs torch, which is not installed")
 
+from metagraph.generation.features import KNOWN, TOLD, count_audio  # noqa: E402
 from metagraph.generation.networks import Control, FlowSizes, MatchingSizes  # noqa: E402
 from metagraph.generation.takes import measure_scales  # noqa: E402
 from metagraph.generation.train_plan import TrainingSettings  # noqa: E402
@@ -127,6 +129,28 @@ def test_losses_of_other_models_are_refused() -> None:
 
 def corpus(takes: Any, sizes: Any) -> TrainingCorpus:
     return TrainingCorpus(takes, *measure_scales(takes), *count_edge_frames(sizes))
+
+
+@pytest.mark.parametrize("unmarked", [0.0, 0.3, 1.0])
+def test_a_share_of_crops_is_not_told_the_marks(takes: Any, unmarked: float) -> None:
+    sizes = changed(tiny("matching"), audio=count_audio("matching"))
+    settings = TrainingSettings(batch=200, known=1.0, unmarked=unmarked, voices=0.0)
+    own = choose_objective(make_net(sizes), settings)
+    data = TrainingCorpus(takes, *measure_scales(takes, sizes.audio), *count_edge_frames(sizes))
+    own.begin(data, torch.Generator().manual_seed(1))
+    heard: list[Any] = []
+    frames = own.net.frames
+
+    def hear(features: Any, *rest: Any) -> Any:
+        heard.append(features)
+        return frames(features, *rest)
+
+    own.net.frames = hear
+    own.loss(data, torch.Generator().manual_seed(2))
+    inside = heard[0][:, sizes.past * sizes.frames : (sizes.past + sizes.new) * sizes.frames]
+    known = inside[:, 0, -TOLD + KNOWN] == 1
+    assert abs(float((~known).float().mean()) - unmarked) < 0.1
+    assert not heard[0][~known][..., -TOLD:-4].any()
 
 
 def test_a_model_of_an_earlier_version_learns_no_more() -> None:

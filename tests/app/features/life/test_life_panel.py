@@ -32,6 +32,17 @@ def test_every_dial_has_a_row_that_shows_it(panel):
         assert row.number.value() == pytest.approx(getattr(Life(), name))
 
 
+def test_the_guard_and_the_contacts_of_hands_are_ticked_and_undone(panel):
+    touch = lambda: panel.document.project.touch  # noqa: E731
+    assert not panel.guard.isChecked() and panel.contacts.isChecked(), "as projects begin"
+    panel.guard.click()
+    panel.contacts.click()
+    assert touch().guard and not touch().contacts
+    panel.document.undo()
+    panel.document.undo()
+    assert not panel.guard.isChecked() and panel.contacts.isChecked() and not touch().guard
+
+
 def test_a_number_typed_and_a_slider_moved_set_the_same_field(panel):
     panel.rows["breath_rate"].number.setValue(20.0)
     assert life(panel).breath_rate == 20.0

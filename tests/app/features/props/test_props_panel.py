@@ -6,6 +6,7 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 import trimesh
 from PySide6.QtCore import QPoint, QPointF, Qt
@@ -284,3 +285,42 @@ def test_props_outside_the_folder_are_said_and_copied_into_it_as_one_step(toys, 
     toys.wait(lambda: count_drawn(toys) == 1)
     panel.document.undo()
     assert only(panel).path == "../box.stl"
+
+
+def test_a_desk_says_how_far_hands_pass_below_it_is_fitted_and_the_view_follows_each_step(toys):
+    samples = Path(__file__).resolve().parents[4] / "sample_clips"
+    project = open_project(samples / "seated.metagraph.yaml").project
+    desk = Prop(name="desk", path=str(samples / "props" / "desk.glb"), at=(0, 0.2, 0.07))
+    project, ident = add_prop(replace(project, character=str(samples / "ben.glb")), desk)
+    toys.document.load(project, None)
+    toys.shell.show("props")
+    panel, stage = toys.shell.panel("props"), toys.shell.stage
+    toys.wait(lambda: "Hands pass" in panel.seat_words.text())
+    assert panel.seat_button.text() == "Fit to the hands" and panel.seat_button.isEnabled()
+    QTest.mouseClick(panel.seat_button, Qt.MouseButton.LeftButton)
+    assert panel.seat_words.text() == "Hands rest on desk" and not panel.seat_button.isEnabled()
+    assert panel.document.undo_stack.undoText().startswith("Fit desk to the hands")
+    assert panel.document.project.props[ident].at[1] < 0.1
+    toys.wait(lambda: stage.performance.shown.tops != ())
+    times = np.arange(0, 20, 0.5)
+
+    def rests() -> bool:
+        """Whether props change what is shown."""
+        shown = stage.performance.shown
+        return not np.array_equal(shown.pose(times).rotations, shown.without_props.at(times).rotations)
+
+    toys.wait(rests)
+    panel.numbers["at", 2].setValue(3.0)
+    toys.wait(lambda: not rests())
+    assert panel.seat_words.text() == "" and not panel.seat_button.isVisibleTo(panel)
+    panel.document.undo()
+    toys.wait(rests)
+    panel.remove()
+    toys.wait(lambda: not rests())
+    toys.docks["props"].close()
+
+
+def test_what_is_added_keeps_the_digest_of_its_file(toys, panel, box):
+    from metagraph.formats.clips import digest
+
+    assert put(toys, panel, box).sha256 == digest(box)

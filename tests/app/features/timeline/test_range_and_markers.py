@@ -119,6 +119,28 @@ def test_the_range_can_be_written_alone(stage, monkeypatch):
     dialog.close()
 
 
+def test_what_is_written_begins_at_the_start_or_at_the_playhead(stage, monkeypatch):
+    from app.features.render import render_dialog
+
+    orders = []
+    monkeypatch.setattr(
+        render_dialog, "write_rendering", lambda project, folder, order, job: orders.append(order)
+    )
+    stage.session.transport.seek(4.0)
+    dialog = render_dialog.RenderDialog(stage.performance, stage.session, stage.jobs, stage.window)
+    monkeypatch.setattr(dialog, "_done", lambda path: None)
+    words = [dialog.part.itemText(n) for n in range(dialog.part.count())]
+    assert words == ["From the start", "From the playhead, 4.00 s"]
+    dialog.seconds.setValue(3.0)
+    for place in (0, 1):
+        dialog.part.setCurrentIndex(place)
+        dialog._write()
+        stage.wait(lambda: len(orders) == place + 1)  # noqa: B023
+        stage.wait(lambda: not stage.jobs.running)
+    assert [(order.start, order.seconds) for order in orders] == [(0.0, 3.0), (4.0, 3.0)]
+    dialog.close()
+
+
 def test_markers_are_added_named_moved_gone_to_and_removed(stage, monkeypatch):
     view, timeline, transport = stage.timeline.lanes, stage.performance.timeline, stage.session.transport
     transport.seek(3.0)
@@ -276,3 +298,23 @@ def test_ripple_moves_and_closes_up_in_one_step(stage):
     assert times() == pytest.approx([max(2.0, 4.0 - gone), 9.0 - gone], abs=0.01)
     stage.document.undo()
     assert times() == [2.0, 4.0, 9.0] and not requests.ripple
+
+
+def test_depth_of_field_is_written_only_with_something_behind_the_character(stage, monkeypatch):
+    from app.features.render import render_dialog
+
+    dialog = render_dialog.RenderDialog(stage.performance, stage.session, stage.jobs, stage.window)
+    orders = []
+    monkeypatch.setattr(
+        render_dialog, "write_rendering", lambda project, folder, order, job: orders.append(order)
+    )
+    monkeypatch.setattr(dialog, "_done", lambda path: None)
+    dialog.blurred.setChecked(True)
+    for kind in (".mp4", ".mov"):
+        dialog.kind.setCurrentIndex(dialog.kind.findData(kind))
+        dialog._suffixed()
+        dialog._write()
+        stage.wait(lambda: not stage.jobs.running)
+    assert [order.blurred for order in orders] == [True, False]
+    assert not dialog.blurred.isEnabled()
+    dialog.close()

@@ -55,7 +55,7 @@ namespace Metagraph
         private int count;
         private readonly ParameterValues parameters;
         private readonly SpeechWatch speech = new SpeechWatch();
-        private List<Speech> watched; // what was said when it was last looked at
+        private Track watched; // whose speech was looked at last
         private double seen = double.NegativeInfinity, cutAt;
 
         public Character(Graph graph, CharacterOptions options = null)
@@ -242,7 +242,7 @@ namespace Metagraph
 
         private void PlanOn()
         {
-            if (WaitsForMore())
+            if (Plan.Track.Speeches.Exists(s => s.More))
             {
                 foreach (string what in UtterancesRules.FindForgotten(Plan.Track, Now))
                 {
@@ -263,20 +263,6 @@ namespace Metagraph
                 cutAt = seen; // what has begun and ended since then is still to be told
                 Forget(seen - options.Recent);
             }
-        }
-
-        /// <summary>Whether any utterance may be forgotten of which more was promised: a frame in which none is makes no garbage.</summary>
-        private bool WaitsForMore()
-        {
-            List<Speech> speeches = Plan.Track.Speeches;
-            for (int n = 0; n < speeches.Count; n++)
-            {
-                if (speeches[n].More)
-                {
-                    return true;
-                }
-            }
-            return false;
         }
 
         /// <summary>Forget what is over, and settle the answers of what was asked for then.</summary>
@@ -308,16 +294,16 @@ namespace Metagraph
                     Note(cues[n].Start, cues[n].End, layer, cues[n].Action.Name, cues[n].Meta);
                 }
             }
-            if (IsNewToHear())
+            if (SpeechChanges())
             {
-                watched = Plan.Track.Speeches;
-                foreach (SpeechEvent one in speech.Watch(watched, seen, Now))
+                foreach (SpeechEvent one in speech.Watch(Plan.Track.Speeches, seen, Now))
                 {
                     Insert(new CharacterEvent
                     {
                         Kind = one.Kind, Layer = "speech", Action = one.Said, Meta = one.Id, At = one.At, Reason = one.Reason,
                     });
                 }
+                watched = Plan.Track;
             }
             seen = Now;
             if (events.Count > Remembered)
@@ -326,22 +312,26 @@ namespace Metagraph
             }
         }
 
-        /// <summary>Whether speech may have begun or ended: in most frames none has, and these make no garbage.</summary>
-        private bool IsNewToHear()
+        /// <summary>Whether speech may begin or end since the update before. To look for it makes garbage.</summary>
+        private bool SpeechChanges()
         {
-            List<Speech> speeches = Plan.Track.Speeches;
-            bool changed = speeches != watched;
-            for (int n = 0; n < speeches.Count && !changed; n++)
+            if (Plan.Track != watched)
             {
-                Speech one = speeches[n];
-                changed = IsNew(one.Start) || IsNew(one.End) || (one.Over != null && IsNew(one.Over.Value));
+                return true;
             }
-            return changed;
+            foreach (Speech one in Plan.Track.Speeches)
+            {
+                if (IsNew(one.Start) || IsNew(one.End) || (one.Over != null && IsNew(one.Over.Value)))
+                {
+                    return true;
+                }
+            }
+            return false;
         }
 
-        private bool IsNew(double seconds)
+        private bool IsNew(double at)
         {
-            return seconds > seen && seconds <= Now;
+            return at > seen && at <= Now;
         }
 
         private void Note(double start, double end, string layer, string action, string key)
