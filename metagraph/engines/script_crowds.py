@@ -21,16 +21,16 @@ def list_crowd_cases(project: Project, seeds: range = SEEDS) -> Iterator[ScriptC
     """Yield cases of crowds of requests, the models on in every other one."""
     for seed in seeds:
         chance = Random(1000 + seed)
-        now, steps = 0.0, list[ScriptStep]()
-        known: list[str] = []
+        now, steps = 0.0, []
+        known: list[Ask] = []
         for n in range(10):
             asks = []
             for k in range(chance.choice((0, 1, 2, 4))):
                 one = _any(project, chance, f"r{n}.{k}", now, known)
-                known.append(one["id"])
+                known.append(one)
                 asks.append(one)
-            if chance.random() < 0.2 and known:  # the same id once more
-                asks.append({**_any(project, chance, "", now, known), "id": chance.choice(known)})
+            if chance.random() < 0.4 and known:
+                asks.append(_again(project, chance, now, known))
             forget = max(0.0, now - chance.choice((0.0, 1.0, 6.0))) if n % 3 == 2 else None
             steps.append(ScriptStep(now, now + 12.0, tuple(asks), forget))
             now += chance.choice((0.25, 0.5, 1.0, 2.5))
@@ -75,7 +75,22 @@ def _quarters(chance: Random, low: float, high: float) -> float:
     return round(chance.uniform(low, high) * 4) / 4
 
 
-def _any(project: Project, chance: Random, ident: str, now: float, known: list[str]) -> Ask:
+def _again(project: Project, chance: Random, now: float, known: list[Ask]) -> Ask:
+    """Return what was asked before under the same id: as it was, or with a part of another of its kind."""
+    old = chance.choice(known)
+    if chance.random() < 0.25:
+        return old
+    for _ in range(40):
+        new = _any(project, chance, old["id"], now, known)
+        if new["do"] == old["do"]:
+            fields = sorted({*old, *new} - {"do", "id"})
+            changed = chance.choice(fields) if fields else "at"
+            out = {name: value for name, value in old.items() if name != changed}
+            return {**out, changed: new[changed]} if changed in new else out
+    return old
+
+
+def _any(project: Project, chance: Random, ident: str, now: float, known: list[Ask]) -> Ask:
     layer: Layer = chance.choice(LAYERS)
     graph = project.graphs[layer]
     at = None if chance.random() < 0.3 else max(0.0, now + _quarters(chance, -1.0, 6.0))
@@ -133,7 +148,7 @@ def _any(project: Project, chance: Random, ident: str, now: float, known: list[s
     return ask(ident, kind, at, **more)
 
 
-def _lasting(chance: Random, kind: str, ident: str, at: float | None, known: list[str]) -> Ask:
+def _lasting(chance: Random, kind: str, ident: str, at: float | None, known: list[Ask]) -> Ask:
     more: dict[str, Any] = {}
     match kind:
         case "look":
@@ -144,7 +159,10 @@ def _lasting(chance: Random, kind: str, ident: str, at: float | None, known: lis
             more |= chance.choice(
                 ({}, {}, {"priority": 0}, {"priority": 2}, {"duration": 2.0}, {"mood": "sad"})
             )
-            more |= {"more": True} if chance.random() < 0.15 else {}
+            more |= {"more": True} if chance.random() < 0.3 else {}
+            lines = [one["id"] for one in known if one["do"] == "say"]
+            if lines and chance.random() < 0.4:  # a further piece of one
+                ident = lines[-1]
         case "mode":
             more["mode"] = chance.choice(MODES)
         case "mood":
@@ -152,8 +170,10 @@ def _lasting(chance: Random, kind: str, ident: str, at: float | None, known: lis
             more |= chance.choice(({}, {"duration": 2.0}, {"intensity": 1.5}, {"intensity": 0.0}))
         case "place":
             more |= {"name": chance.choice(("user", "door")), "point": [0.5, 1.5, 1.0]}
-        case "withdraw" | "interrupt" | "pause":
-            more["what"] = chance.choice([*known[-8:], ""] if known else [""])
+        case "withdraw" | "interrupt" | "pause" | "resume" | "finish":
+            lines = [one["id"] for one in known if one["do"] == "say"]
+            every = [one["id"] for one in known[-8:]]
+            more["what"] = chance.choice([*every, *lines[-4:], *lines[-2:], ""])
         case _:
             return ask(ident, "blink", at)
     return ask(ident, kind, at, **more)

@@ -106,6 +106,11 @@ def _lines(chance: Random) -> Iterator[Row]:
         far = [x + y for x, y in zip(beside, along, strict=True)]
         yield "apart", [*a, *b, *beside, *far], []
         yield "apart", [*a, *b, *far, *beside], []
+    for n in range(8):  # short ones that are nearly parallel to others
+        slant = [0.03125, 0.0078125 * 0.25**n, 0.0]
+        ends = [0.0, 0.0625, 0.0, 0.25, 0.0625, 0.0, *points, *slant]
+        yield "apart", ends, []
+        yield "apart", [*ends[6:], *ends[:6]], []
     yield "apart", [*points, *points, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5], []
     yield "apart", [*points, *points, *points, *points], []
 

@@ -524,6 +524,9 @@ def varied() -> Project:
         project, [arms["beat"], arms["lift"]], name="shrug"
     )  # of one name the likeliest
     project = edits.update_actions(project, [arms["scratch"]], name="point", likelihood=3.0)
+    tilted = next(a for a in project.graphs["head"].actions.values() if a.name == "tilted")
+    wide = replace(tilted.timing, blend_in=1.0)  # a seam longer than half the loop
+    project = edits.update_actions(project, [tilted.id], timing=wide)
     project = edits.update_actions(
         project, [arms["point"]], tags=("there", "question", "surprise", "angry", "warm")
     )
@@ -675,7 +678,7 @@ def stepping(layer: Layer = "body") -> Project:
     spread = replace(spread, rotations=turns)
     wide = b.stance(layer, "wide", spread, m.clip("wide, still", 16, 0.0, apart))
     for n, action in enumerate([*b.project.graphs[layer].of(stand, "stance")]):
-        timing = replace(action.timing, blend_in=0.4 * n)
+        timing = replace(action.timing, blend_in=0.4 * n, start=0.25 * n)  # the loop with a seam begins later
         b.project = edits.update_actions(b.project, [action.id], timing=timing, likelihood=1.0 + n)
     b.act(layer, "transition", stand, m.clip("to wide", 14, 1.3, still, apart, ("Hips", *LEGS), 0.1), wide)
     b.act(layer, "transition", wide, m.clip("to stand", 15, 1.1, apart, still, sway, 0.1), stand)

@@ -158,7 +158,7 @@ ADA = Look(
     ),
     sleeve=0.085,
     earrings=True,
-    lids=3.0,
+    lids=8.0,
 )
 BEN = Look(
     "Ben",
@@ -203,7 +203,7 @@ BEN = Look(
     coat=True,
     beard=True,
     glasses=True,
-    lids=4.0,
+    lids=8.0,
     lashes=0.0014,
 )
 LOOKS = (MANNEQUIN, ADA, BEN)

@@ -77,8 +77,8 @@ LANGUAGES = {
         ".gd",
         (
             "metagraph_character", "plugin.gd", "conformance.gd", "character.gd", "check.gd",
-            "describe.gd", "glb.gd", "graph.gd", "shim", "util.gd", "bones.gd", "clip.gd", "single_rules.gd",
-            "letters_table.gd",
+            "describe.gd", "glb.gd", "graph.gd", "shim", "util.gd", "bones.gd", "clip.gd",
+            "single_rules.gd", "letters_table.gd",
         ),
         comments=r"#[^\n]*",
         texts=r'"""(?:.|\n)*?"""|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'',
@@ -309,6 +309,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument("language", choices=[*LANGUAGES])
     parser.add_argument("--count", type=int, default=400, help="how many are drawn of all there are")
     parser.add_argument("--seed", type=int, default=1, help="of the draw")
+    parser.add_argument("--minutes", type=float, default=1e9, help="to stop after, in the middle of the draw")
     parser.add_argument("--only", default="", help="part of the paths of sources to change")
     parser.add_argument("--out", type=Path, help="a file the survivors are written to, as JSON")
     parser.add_argument("--again", type=Path, help="such a file: try those alone")
@@ -319,8 +320,9 @@ def main(words: Sequence[str] | None = None) -> None:
         known = {(p, text, old) for p, text, old in json.loads(asked.again.read_text())}
         drawn = [e for e in every if (e.path, e.text, e.old) in known]
     else:
-        drawn = sorted(random.Random(asked.seed).sample(every, min(asked.count, len(every))))
+        drawn = random.Random(asked.seed).sample(every, min(asked.count, len(every)))
     alive: list[Edit] = []
+    tried = 0
     dead: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as scratch:
         running = runner(asked.language, Path(scratch))
@@ -328,7 +330,10 @@ def main(words: Sequence[str] | None = None) -> None:
             said = running.notices(None)
             assert said == "", f"the vectors do not hold before anything is changed: {said}"
             begun = time.monotonic()
-            for edit in drawn:
+            for edit in drawn:  # in the order they were drawn: those tried until any time are a fair share
+                if time.monotonic() - begun > 60 * asked.minutes:
+                    break
+                tried += 1
                 if running.notices(edit):
                     dead[edit.path] += 1
                 else:
@@ -336,7 +341,7 @@ def main(words: Sequence[str] | None = None) -> None:
                     print(f"lives: {edit}", flush=True)
         finally:
             running.close()
-    total = len(drawn)
+    total = tried
     print(f"\n{total} of {len(every)} changes tried in {time.monotonic() - begun:.0f} s")
     lived = Counter(e.path for e in alive)
     for path in sorted(dead | lived):

@@ -117,7 +117,7 @@ def generating(folder: Path) -> Row:
     """Return the row of what the sample's model makes of the conversation's first voice."""
     out, talk = folder / "generated.glb", SAMPLES / "conversation" / "talk.ogg"
     words = ["generate", "sample", str(SAMPLES / "models" / "own.mgmodel"), "--speech", str(talk)]
-    run([*words, "--words", str(talk.with_suffix(".json")), "-o", str(out)])
+    run([*words, "--words", str(talk.with_suffix(".json")), "--bare", "-o", str(out)])
     project = open_project(SAMPLE).project
     seconds = read_clips(out)[0].duration
     return largest(project, make_plan(project, seconds, seed=SEED), seconds, out)

@@ -92,7 +92,11 @@ def find_latest(state: LayerState, request: MetaRequest) -> float:
         fits = meets(action, request)
         if request.action is not None:
             fits = action.id == request.action
-        if fits and may_play(state, action):
+        if not fits or not may_play(state, action):
+            continue
+        if action.kind != "gesture":  # it has no stroke: it should begin when its request does
+            least = min(least, request.stroke - request.start)
+        else:
             found = find_phases(state.project, action)
             lead = found.stroke - found.skip(action.timing.blend_in)
             speed = find_tempo(action, find_mood(state, request, request.stroke))

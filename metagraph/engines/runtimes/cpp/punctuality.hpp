@@ -184,7 +184,12 @@ inline double find_latest(const Ref<LayerState>& state, const Ref<MetaRequest>& 
         if (request->action.has_value()) {
             fits = action->id == *request->action;
         }
-        if (fits && routes::may_play(state, action)) {
+        if (!fits || !routes::may_play(state, action)) {
+            continue;
+        }
+        if (action->kind != "gesture") { // it has no stroke: it should begin when its request does
+            least = std::min(least, *request->stroke - request->start);
+        } else {
             Ref<Phases> found = phases::find_phases(state->project, action);
             double lead = found->stroke - found->skip(action->timing->blend_in);
             double speed = manner::find_tempo(action, manner::find_mood(state, request, *request->stroke));

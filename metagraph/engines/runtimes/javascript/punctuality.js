@@ -108,7 +108,12 @@ export function findLatest(state, request) {
     if (request.action !== null) {
       fits = action.id === request.action;
     }
-    if (fits && mayPlay(state, action)) {
+    if (!fits || !mayPlay(state, action)) {
+      continue;
+    }
+    if (action.kind !== "gesture") { // it has no stroke: it should begin when its request does
+      least = Math.min(least, request.stroke - request.start);
+    } else {
       const found = findPhases(state.project, action);
       const lead = found.stroke - found.skip(action.timing.blendIn);
       const speed = findTempo(action, findMood(state, request, request.stroke));

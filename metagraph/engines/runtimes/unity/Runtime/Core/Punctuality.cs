@@ -122,7 +122,15 @@ namespace Metagraph
                 {
                     fits = action.Id == request.Action;
                 }
-                if (fits && RoutesRules.MayPlay(state, action))
+                if (!fits || !RoutesRules.MayPlay(state, action))
+                {
+                    continue;
+                }
+                if (action.Kind != "gesture") // it has no stroke: it should begin when its request does
+                {
+                    least = Math.Min(least, request.Stroke.Value - request.Start);
+                }
+                else
                 {
                     var found = PhasesRules.FindPhases(state.Project, action);
                     var lead = found.Stroke - found.Skip(action.Timing.BlendIn);

@@ -92,7 +92,11 @@ static func find_latest(state, request):
 		var fits = CueShapes.meets(action, request)
 		if request.action != null:
 			fits = action.id == request.action
-		if fits and Routes.may_play(state, action):
+		if not fits or not Routes.may_play(state, action):
+			continue
+		if action.kind != "gesture":  # it has no stroke: it should begin when its request does
+			least = Util.least(least, request.stroke - request.start)
+		else:
 			var found = Phases.find_phases(state.project, action)
 			var lead = found.stroke - found.skip(action.timing.blend_in)
 			var speed = Manner.find_tempo(action, Manner.find_mood(state, request, request.stroke))
