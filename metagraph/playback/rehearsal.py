@@ -514,8 +514,12 @@ class _Findings:
         )
         if share < 0.5:
             words = phrase("an arm is {length:.0f} cm inside the body for a moment", length=deep)
-        remedy = phrase(
-            "Turn on *Keep hands out of the body* under Life, or skip the gesture in this stance."
+        remedy = (
+            phrase("Skip the action in this stance, or move the arm away in its clip.")
+            if self.project.touch.guard
+            else phrase(
+                "Turn on *Keep hands out of the body* under Life, or skip the gesture in this stance."
+            )
         )
         yield self._problem(
             "play-arm-inside",

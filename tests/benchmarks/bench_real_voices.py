@@ -13,7 +13,7 @@ on the sample project's graph. Printed for each who speaks:
     rate       stretches in which a hand is more than 0.15 m above its usual height, a minute
     speed      mean hand speed, m/s
 
-The second word of a name before a hyphen, `en` of `en-allison.wav`, is its language; `all` is the mean of a
+What a name has before its first hyphen, `en` of `en-allison.wav`, is its language; `all` is the mean of a
 language's recordings, weighed by their length.
 
 options: --seeds 3; --ahead FRAMES of sound, all unless given; --unmarked, the model hears the sound alone, as

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -253,3 +254,22 @@ def test_who_sits_above_the_floor_lacks_a_seat_and_is_not_said_to_float(sound: P
     found = {p.code: p for p in rehearse(changed(sound, seated), SECONDS)}
     assert "play-in-air" not in found and found["play-no-seat"].severity == "hint"
     assert "sits with its feet" in found["play-no-seat"].message and "seat" in found["play-no-seat"].remedy
+
+
+def test_an_arm_inside_the_body_is_remedied_by_what_is_not_done_yet(sound: Project) -> None:
+    def crossing(clip: Clip) -> Clip:
+        turns = clip.rotations.copy()
+        for side, angle in (("Left", -1.4), ("Right", 1.4)):
+            turns[:, clip.skeleton.index(f"{side}UpperArm")] = rotation.from_axis_angle(
+                np.array((0.0, 0, 1.0)), np.full(clip.frames, angle)
+            )
+            turns[:, clip.skeleton.index(f"{side}LowerArm")] = rotation.from_axis_angle(
+                np.array((0.0, 0, 1.0)), np.full(clip.frames, angle)
+            )
+        return replace(clip, rotations=turns)
+
+    inside = changed(sound, crossing)
+    for guard, words in ((False, "Turn on *Keep hands out of the body*"), (True, "Skip the action")):
+        project = replace(inside, touch=msgspec.structs.replace(inside.touch, guard=guard))
+        found = [p for p in rehearse(project, SECONDS) if p.code == "play-arm-inside"]
+        assert all(p.remedy.startswith(words) for p in found) and (found or guard)
