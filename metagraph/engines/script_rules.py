@@ -168,7 +168,7 @@ def _arms(chance: Random) -> Iterator[Row]:
     for n in range(56):
         bent = n % 4 != 3
         turns = [_turned(chance, 0.125) if k < 3 else _turned(chance, 0.75) for k in range(len(BONES))]
-        if not bent:  # straight arms, whose side is told
+        if not bent:  # straight arms, whose side is given
             turns = [STILL if k in (4, 7) else turn for k, turn in enumerate(turns)]
         if n % 2:  # hands before the belly, where they meet
             turns[3], turns[6] = [0.25, -0.75, -0.375, 1.0], [0.25, 0.75, 0.375, 1.0]
@@ -283,7 +283,7 @@ def _steps(chance: Random) -> Iterator[Row]:
         for row in (first, last, first, last):
             numbers += [2.0, *row]
         if n == 70:
-            numbers = [1.75, 0.0, *numbers[18:]]  # nothing known of before
+            numbers = [1.75, 0.0, *numbers[18:]]  # nothing known earlier
         seconds = (0.0, 0.125, 0.5, 1.0)[n // 6 % 4]
         yield "steps", [*numbers, seconds * (n % 9) / 8, seconds], []
         yield "steps", [*numbers, seconds * ((5 * n) % 7) / 8, seconds], []
