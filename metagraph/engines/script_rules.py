@@ -168,7 +168,7 @@ def _arms(chance: Random) -> Iterator[Row]:
     for n in range(56):
         bent = n % 4 != 3
         turns = [_turned(chance, 0.125) if k < 3 else _turned(chance, 0.75) for k in range(len(BONES))]
-        if not bent:  # straight arms, whose side is told
+        if not bent:  # straight arms, whose side is given
             turns = [STILL if k in (4, 7) else turn for k, turn in enumerate(turns)]
         if n % 2:  # hands before the belly, where they meet
             turns[3], turns[6] = [0.25, -0.75, -0.375, 1.0], [0.25, 0.75, 0.375, 1.0]
@@ -251,6 +251,8 @@ def _bodies(chance: Random) -> Iterator[Row]:
             continue
         sinks = [*_some(chance, 0.125, 1), 0.0625, 0.0, (0.75, 0.875, 0.90625)[n % 3], 0.125]
         sinks += [0.0, 2.0 if n % 7 == 0 else 0.0, 0.5 if n % 5 == 0 else 0.0, 0.875, (0.0, 0.0625)[n % 2]]
+        if n % 4 == 1:
+            sinks[:5] = [0.9375 + n / 2048, 0.0625, 0.0, 0.875, 0.125]  # farther aside than a leg is long
         near = (0.0, 0.0078125, 0.0625, 0.25)[n // 2 % 4]
         feet: Numbers = []
         for side in (0.125, -0.125):
@@ -283,7 +285,7 @@ def _steps(chance: Random) -> Iterator[Row]:
         for row in (first, last, first, last):
             numbers += [2.0, *row]
         if n == 70:
-            numbers = [1.75, 0.0, *numbers[18:]]  # nothing known of before
+            numbers = [1.75, 0.0, *numbers[18:]]  # nothing known of earlier
         seconds = (0.0, 0.125, 0.5, 1.0)[n // 6 % 4]
         yield "steps", [*numbers, seconds * (n % 9) / 8, seconds], []
         yield "steps", [*numbers, seconds * ((5 * n) % 7) / 8, seconds], []
@@ -419,6 +421,9 @@ def _times_told(_chance: Random) -> Iterator[Row]:
 
 
 def _pieces(chance: Random) -> Iterator[Row]:
+    shut = [0, 1, 0.0, 1.0, 0.0]
+    for first, said in ((0.05, 0.5), (0.046875, 0.5), (0.0625, 0.5), (0.0, 0.0), (0.03125, 0.03125)):
+        yield "piece", [*shut, 0, 1, first, 1.0, 0.0, said, 0.0, 0.0, 0.0], ["PP", "aa"]
     for n in range(150):
         numbers: Numbers = []
         texts: list[str] = []
