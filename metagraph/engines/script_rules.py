@@ -133,9 +133,13 @@ BONES = (
 )
 
 
-def _skeleton(turns: Sequence[Sequence[float]], bones: Sequence[Sequence[float]] = BONES) -> Numbers:
+def _skeleton(
+    turns: Sequence[Sequence[float]],
+    bones: Sequence[Sequence[float]] = BONES,
+    parents: Sequence[int] = PARENTS,
+) -> Numbers:
     out: Numbers = [float(len(bones))]
-    for up, bone, turn in zip(PARENTS, bones, turns, strict=True):
+    for up, bone, turn in zip(parents, bones, turns, strict=True):
         out += [float(up), *bone, *turn]
     for upper, lower, hand, below in LIMBS:
         out += [upper, lower, hand, len(below), *below]
@@ -199,7 +203,18 @@ def _arms(chance: Random) -> Iterator[Row]:
         shoulder = [0.1875 if n % 2 == 0 else -0.1875, 1.4375, 0.0]
         goal = [x + y for x, y in zip(shoulder, _some(chance, size), strict=True)]
         side_of = [0.0, 0.0, 0.0] if n % 7 == 6 else _some(chance, 1.0)
-        numbers = [*_skeleton(turns, bones), 0.0, 0.0, float(n % 2), *goal, *_turned(chance, 1.0), *side_of]
+        parents = list(PARENTS)
+        if n % 5 == 4:  # arms without a body
+            parents[3] = parents[6] = -1
+        numbers = [
+            *_skeleton(turns, bones, parents),
+            0.0,
+            0.0,
+            float(n % 2),
+            *goal,
+            *_turned(chance, 1.0),
+            *side_of,
+        ]
         yield "bring", numbers, []
 
 
