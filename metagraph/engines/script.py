@@ -253,6 +253,11 @@ def _stances(project: Project) -> Iterator[ScriptCase]:
         yield ScriptCase(
             f"{layer}: to stay", "the models do not leave a stance that was asked to stay", steps, idle=True
         )
+        gesture = _some(project, layer, "gesture")
+        if gesture:
+            asks = [_ask("far", "stance", 1.0, layer=layer, stance=far)]
+            asks += [_ask(f"u{n}", "gesture", 1.25 + 0.25 * n, layer=layer, priority=4) for n in range(2)]
+            yield _once(f"{layer}: cut on the way to a stance", "what is cut does not go on", asks, alive=())
         asks = [_ask("c1", "change", 1.0, layer=layer), _ask("c2", "change", 6.0, layer=layer)]
         yield _once(f"{layer}: any other stance", "a transition drawn among those there are", asks)
         there = [a for a in _some(project, layer, "gesture", "fidget") if a.stance == far]

@@ -314,10 +314,12 @@ def _talked_over(project: Project) -> Iterator[ScriptCase]:
         ask("k", "look", 4.0, to=[0.8, 1.2, 0.9]),
         t("a", 4.0, 2.0, 1),
         ask("m", "mode", 4.0, mode="talking"),
+        ask("p", "place", 4.0, name="user", point=[1.5, 1.0, 0.5]),
+        ask("u", "look", 5.0, to="user"),
     ]
     steps = (
         ScriptStep(0.0, 12.0, (*asks, t("b", 3.5, 4.0, 0), ask("n", "look", 3.5, to="ahead", duration=4.0))),
-        ScriptStep(now, 12.0, tuple(ask(f"w{x}", "withdraw", what=x) for x in "kambn")),
+        ScriptStep(now, 12.0, tuple(ask(f"w{x}", "withdraw", what=x) for x in "kambnp")),
     )
     times = (3.7, 3.95, 4.05, 4.3, 5.1, 6.2)
     yield ScriptCase("taken back as it begins", "it never was", steps, times=times, alive=(True,))

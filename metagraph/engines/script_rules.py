@@ -133,9 +133,13 @@ BONES = (
 )
 
 
-def _skeleton(turns: Sequence[Sequence[float]], bones: Sequence[Sequence[float]] = BONES) -> Numbers:
+def _skeleton(
+    turns: Sequence[Sequence[float]],
+    bones: Sequence[Sequence[float]] = BONES,
+    parents: Sequence[int] = PARENTS,
+) -> Numbers:
     out: Numbers = [float(len(bones))]
-    for up, bone, turn in zip(PARENTS, bones, turns, strict=True):
+    for up, bone, turn in zip(parents, bones, turns, strict=True):
         out += [float(up), *bone, *turn]
     for upper, lower, hand, below in LIMBS:
         out += [upper, lower, hand, len(below), *below]
@@ -199,7 +203,18 @@ def _arms(chance: Random) -> Iterator[Row]:
         shoulder = [0.1875 if n % 2 == 0 else -0.1875, 1.4375, 0.0]
         goal = [x + y for x, y in zip(shoulder, _some(chance, size), strict=True)]
         side_of = [0.0, 0.0, 0.0] if n % 7 == 6 else _some(chance, 1.0)
-        numbers = [*_skeleton(turns, bones), 0.0, 0.0, float(n % 2), *goal, *_turned(chance, 1.0), *side_of]
+        parents = list(PARENTS)
+        if n % 5 == 4:  # arms without a body
+            parents[3] = parents[6] = -1
+        numbers = [
+            *_skeleton(turns, bones, parents),
+            0.0,
+            0.0,
+            float(n % 2),
+            *goal,
+            *_turned(chance, 1.0),
+            *side_of,
+        ]
         yield "bring", numbers, []
 
 
@@ -251,6 +266,8 @@ def _bodies(chance: Random) -> Iterator[Row]:
             continue
         sinks = [*_some(chance, 0.125, 1), 0.0625, 0.0, (0.75, 0.875, 0.90625)[n % 3], 0.125]
         sinks += [0.0, 2.0 if n % 7 == 0 else 0.0, 0.5 if n % 5 == 0 else 0.0, 0.875, (0.0, 0.0625)[n % 2]]
+        if n % 4 == 1:
+            sinks[:5] = [0.9375 + n / 2048, 0.0625, 0.0, 0.875, 0.125]  # farther aside than a leg is long
         near = (0.0, 0.0078125, 0.0625, 0.25)[n // 2 % 4]
         feet: Numbers = []
         for side in (0.125, -0.125):
@@ -283,7 +300,7 @@ def _steps(chance: Random) -> Iterator[Row]:
         for row in (first, last, first, last):
             numbers += [2.0, *row]
         if n == 70:
-            numbers = [1.75, 0.0, *numbers[18:]]  # nothing known earlier
+            numbers = [1.75, 0.0, *numbers[18:]]  # nothing known of earlier
         seconds = (0.0, 0.125, 0.5, 1.0)[n // 6 % 4]
         yield "steps", [*numbers, seconds * (n % 9) / 8, seconds], []
         yield "steps", [*numbers, seconds * ((5 * n) % 7) / 8, seconds], []
@@ -419,6 +436,9 @@ def _times_told(_chance: Random) -> Iterator[Row]:
 
 
 def _pieces(chance: Random) -> Iterator[Row]:
+    shut = [0, 1, 0.0, 1.0, 0.0]
+    for first, said in ((0.05, 0.5), (0.046875, 0.5), (0.0625, 0.5), (0.0, 0.0), (0.03125, 0.03125)):
+        yield "piece", [*shut, 0, 1, first, 1.0, 0.0, said, 0.0, 0.0, 0.0], ["PP", "aa"]
     for n in range(150):
         numbers: Numbers = []
         texts: list[str] = []

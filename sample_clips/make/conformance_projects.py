@@ -652,7 +652,7 @@ def repeating(touch: bool = False) -> Project:
     if not touch:
         return project
     lifting = Life(
-        stillness=0.1, breath_rate=18.0, follow_through=0.0, shoulder_lift=1.8
+        stillness=0.1, breath_rate=18.0, follow_through=0.0, shoulder_lift=0.9
     )  # shoulders alone answer
     return replace(project, touch=Touch(True, True), life=lifting)
 
@@ -705,7 +705,8 @@ def stepping(layer: Layer = "body") -> Project:
     sides = b.stance("arms", "at sides", m.clip("sides", 21, 1.9, m.stance(3, ARMS, 0.4), None, ARMS, 0.05))
     b.act("arms", "gesture", sides, m.clip("reach", 51, 1.5, m.stance(3, ARMS, 0.4), None, ARMS))
     b.project = edits.set_base(b.project, b.project.graphs[layer].of(stand, "stance")[0].clip, 0)
-    return replace(b.project, life=Life(breath_rate=18.0, planted_feet=0.9))
+    leaning = Life(breath_rate=18.0, planted_feet=0.9, follow_through=0.8, shoulder_lift=0.0)
+    return replace(b.project, life=leaning)
 
 
 @numbered_ids()
