@@ -29,7 +29,7 @@ MENUS: dict[str, tuple[str, ...]] = {
     tr_noop("&Edit"): ("history", "selection", "properties", "find"),
     tr_noop("&Graph"): ("author", "label", "layers", "stances", "skeleton"),
     tr_noop("C&lips"): ("rating", "labels", "favourites", "files", "view", "groups"),
-    tr_noop("&Motion"): ("make",),
+    tr_noop("&Motion"): ("make", "contacts"),
     tr_noop("&Play"): ("transport", "range", "markers", "timeline", "live", "show"),
     tr_noop("&Conversation"): ("read", "settings", "stage", "write", "remove"),
     tr_noop("&View"): ("workspaces", "workspace", "character", "sides", "watch", "graph", "look"),

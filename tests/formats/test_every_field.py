@@ -107,7 +107,7 @@ def example(kind: Any) -> Any:
         low, high = kind.ge if kind.ge is not None else kind.gt, kind.le if kind.le is not None else kind.lt
         return max(min(1, high if high is not None else 1), low if low is not None else 1)
     if isinstance(kind, inspect.StrType):
-        return "x"
+        return "ab" * 32 if kind.pattern is not None else "x"
     if isinstance(kind, inspect.LiteralType):
         return kind.values[-1]
     if isinstance(kind, inspect.VarTupleType | inspect.ListType):

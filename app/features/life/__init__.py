@@ -24,8 +24,8 @@ def contribute(shell: Shell) -> Contribution:
         commands=(
             Command(
                 "hand contacts",
-                "&Graph",
-                "author",
+                "&Motion",
+                "contacts",
                 tr("Find hand c&ontacts"),
                 find,
                 tip=tr(

@@ -146,7 +146,7 @@ class LifePanel(QWidget):
         self.guard.clicked.connect(lambda on: self._touch(tr("Turn the guard of hands on or off"), guard=on))
         self.contacts = QCheckBox(tr("Keep hand contacts"), self)
         self.contacts.setToolTip(
-            tr("Hands stay where they touch the body. Find contacts with Graph > Find hand contacts")
+            tr("Hands stay where they touch the body. Find contacts with Motion > Find hand contacts")
         )
         self.contacts.clicked.connect(lambda on: self._touch(tr("Turn hand contacts on or off"), contacts=on))
         for box in (self.guard, self.contacts):
