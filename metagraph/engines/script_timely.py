@@ -34,17 +34,15 @@ def list_timely_cases(project: Project) -> Iterator[ScriptCase]:
         ]
         about = "strokes on time or not at all, shared ones, and what leaves room for the next"
         yield make_case(f"{layer}: strokes that may not be late", about, asks, 36.0)
-        for more in (
-            0.1,
-            2.0,
-        ):  # one that comes late, and another that could share its stroke, if it may wait
+        # One that comes late, and another that could share its stroke, if it may wait.
+        for wait in (0.1, 2.0):
             asks = [ask("runs", "action", 1.0, action=one.id)]
             asks += [ask("m0", "gesture", stroke=1.75, tags=[many[0]], layer=layer, late=4.0)] if many else []
             asks += (
-                [ask("m1", "gesture", stroke=2.0, tags=[many[-1]], layer=layer, late=more)] if many else []
+                [ask("m1", "gesture", stroke=2.0, tags=[many[-1]], layer=layer, late=wait)] if many else []
             )
             about = "a shared stroke may be too late for one of both"
-            yield make_case(f"{layer}: a late stroke that {more} s later may be shared", about, asks, 14.0)
+            yield make_case(f"{layer}: a late stroke that {wait} s later may be shared", about, asks, 14.0)
         now = [
             ask("n0", "gesture", stroke=6.6, **own),
             ask("n1", "gesture", stroke=7.8, layer=layer, late=0.5),
