@@ -183,6 +183,7 @@ def test_helpers_and_ends_of_other_rigs_take_no_role() -> None:
     }  # fmt: skip
 
 
+@pytest.mark.nightly
 def test_vrm_of_either_version_and_direction_moves_alike(sample_export: Path, tmp_path: Path) -> None:
     """0.x faces -Z: half a turn of the file changes nothing of what is seen. So does a foot that hangs on
     nothing, as in rigs with IK, and centimetres under a node that shrinks them.

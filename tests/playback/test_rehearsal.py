@@ -271,5 +271,5 @@ def test_an_arm_inside_the_body_is_remedied_by_what_is_not_done_yet(sound: Proje
     inside = changed(sound, crossing)
     for guard, words in ((False, "Turn on *Keep hands out of the body*"), (True, "Skip the action")):
         project = replace(inside, touch=msgspec.structs.replace(inside.touch, guard=guard))
-        found = [p for p in rehearse(project, SECONDS) if p.code == "play-arm-inside"]
+        found = [p for p in rehearse(project, 12.0) if p.code == "play-arm-inside"]
         assert all(p.remedy.startswith(words) for p in found) and (found or guard)

@@ -140,8 +140,11 @@ def test_trimesh_finds_no_vertex_of_the_hands_under_the_desk() -> None:
     ],
     ids=["sits at a desk", "stands at a desk", "at a lectern", "a foot on a step", "sits, a foot on a bar"],
 )
-def test_what_props_add_keeps_the_law_of_continuity(name: str, tops: tuple[PropTop, ...]) -> None:
-    _, before, after, _ = play(name, tops, 120.0)
+@pytest.mark.parametrize("seconds", [48.0, pytest.param(120.0, marks=pytest.mark.nightly)])
+def test_what_props_add_keeps_the_law_of_continuity(
+    name: str, tops: tuple[PropTop, ...], seconds: float
+) -> None:
+    _, before, after, _ = play(name, tops, seconds)
     assert np.abs(after.rotations - before.rotations).max() > 0.01
     added = ContinuityLaw(project_of(name)).added([("before", before), ("props", after)])["props"]
     assert added.breaks.max() <= 1
