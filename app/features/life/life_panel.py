@@ -108,6 +108,10 @@ class DialRow:
         for widget in (self.slider, self.number):
             widget.blockSignals(False)
 
+    def set_enabled(self, on: bool) -> None:
+        for widget in (self.tick, self.label, self.slider, self.number):
+            widget.setEnabled(on)
+
     def _slid(self, place: int) -> None:
         self._set(min(self.dial.high, self.dial.low + place * self.dial.step), not self.slider.isSliderDown())
 
@@ -139,18 +143,6 @@ class LifePanel(QWidget):
         self.on = QCheckBox(tr("Alive: breathing, gaze, blinks and lip sync"), self)
         self.on.clicked.connect(lambda on: self._change(tr("Turn life on or off"), on=on))
         outer.addWidget(self.on)
-        self.guard = QCheckBox(tr("Keep hands out of the body"), self)
-        self.guard.setToolTip(
-            tr("Hands and forearms slide along body, head and each other instead of entering")
-        )
-        self.guard.clicked.connect(lambda on: self._touch(tr("Turn the guard of hands on or off"), guard=on))
-        self.contacts = QCheckBox(tr("Keep hand contacts"), self)
-        self.contacts.setToolTip(
-            tr("Hands stay where they touch the body. Find contacts with Motion > Find hand contacts")
-        )
-        self.contacts.clicked.connect(lambda on: self._touch(tr("Turn hand contacts on or off"), contacts=on))
-        for box in (self.guard, self.contacts):
-            outer.addWidget(box)
         top = QGridLayout()
         top.setHorizontalSpacing(10)
         outer.addLayout(top)
@@ -190,12 +182,12 @@ class LifePanel(QWidget):
         grid.setVerticalSpacing(5)
         grid.setColumnStretch(1, 1)
         rows: dict[str, DialRow] = {}
-        group, n = "", 0
+        group, n = "", 0 if mode is not None else self._add_hands(page, grid)
         for dial in DIALS[1:] if mode is None else MANNER_DIALS:
             if dial.group != group:
                 title = QLabel(tr(dial.group), page)
                 title.setProperty("title", True)
-                title.setContentsMargins(0, 8 if group else 0, 0, 0)
+                title.setContentsMargins(0, 8 if n else 0, 0, 0)
                 grid.addWidget(title, n, 0, 1, 3)
                 group, n = dial.group, n + 1
                 if group == "Mood":
@@ -214,6 +206,24 @@ class LifePanel(QWidget):
             self.rows |= rows
         else:
             self.manner_rows[mode] = rows
+
+    def _add_hands(self, page: QWidget, grid: QGridLayout) -> int:
+        """Add whether hands stay out of the body and where they touch it; return the next row."""
+        title = QLabel(tr("Hands"), page)
+        title.setProperty("title", True)
+        self.guard = QCheckBox(tr("Keep hands out of the body"), page)
+        self.guard.setToolTip(
+            tr("Hands and forearms slide along body, head and each other instead of entering")
+        )
+        self.guard.clicked.connect(lambda on: self._touch(tr("Turn the guard of hands on or off"), guard=on))
+        self.contacts = QCheckBox(tr("Keep hand contacts"), page)
+        self.contacts.setToolTip(
+            tr("Hands stay where they touch the body. Find contacts with Motion > Find hand contacts")
+        )
+        self.contacts.clicked.connect(lambda on: self._touch(tr("Turn hand contacts on or off"), contacts=on))
+        for n, widget in enumerate((title, self.guard, self.contacts)):
+            grid.addWidget(widget, n, 0, 1, 3)
+        return 3
 
     def _add_moods(self, page: QWidget, grid: QGridLayout, row: int) -> None:
         """Add the choice of a named mood above its dials."""
@@ -257,7 +267,12 @@ class LifePanel(QWidget):
         for mode, rows in self.manner_rows.items():
             for name, row in rows.items():
                 row.show_value(getattr(get_manner(life, mode), name))
-        self.area.setEnabled(life.on)
+        self.moods.setEnabled(life.on)
+        for row in (
+            *self.rows.values(),
+            *(row for rows in self.manner_rows.values() for row in rows.values()),
+        ):
+            row.set_enabled(life.on or row is self.rows["stillness"])
 
     def _edited(self, before: Project, after: Project) -> None:
         if before.life is not after.life or before.touch is not after.touch:

@@ -80,7 +80,8 @@ def test_a_double_click_puts_a_dial_back(panel):
 
 def test_all_of_it_is_turned_off_at_once(panel):
     panel.on.click()
-    assert not life(panel).on and not panel.area.isEnabled()
+    assert not life(panel).on and not panel.rows["blinks"].slider.isEnabled()
+    assert panel.guard.isEnabled(), "the guard needs no life"
     panel.document.undo()
     assert life(panel).on and panel.on.isChecked()
 
